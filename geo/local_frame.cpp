@@ -8,7 +8,7 @@
 namespace waymark::inline geo {
 
 struct LocalFrame::Conversion {
-  Conversion(const Crs& crs, const Point<MapCrs>& at) : origin(at) {
+  Conversion(const Crs& of_map, const Point<MapCrs>& at) : crs(of_map), origin(at) {
     if (crs.kind() == CrsKind::local) {
       metres_per_unit = crs.metres_per_unit();
       return;
@@ -31,6 +31,7 @@ struct LocalFrame::Conversion {
     return {x, y, point.z()};
   }
 
+  Crs crs;
   Point<MapCrs> origin;
   double metres_per_unit = 1;                            // of a local CRS
   std::optional<GeographicLib::LocalCartesian> plane;    // absent for a local CRS
@@ -40,6 +41,10 @@ struct LocalFrame::Conversion {
 
 LocalFrame::LocalFrame(const Crs& crs, const Point<MapCrs>& origin)
     : conversion_(std::make_shared<const Conversion>(crs, origin)) {}
+
+const Crs& LocalFrame::crs() const {
+  return conversion_->crs;
+}
 
 const Point<MapCrs>& LocalFrame::origin() const {
   return conversion_->origin;

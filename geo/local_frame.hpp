@@ -14,6 +14,7 @@ class LocalFrame {
  public:
   LocalFrame(const Crs& crs, const Point<MapCrs>& origin);
 
+  const Crs& crs() const;
   const Point<MapCrs>& origin() const;
   Point<MapFrame> map_frame_from_crs(const Point<MapCrs>& point) const;
   Point<MapCrs> crs_from_map_frame(const Point<MapFrame>& point) const;

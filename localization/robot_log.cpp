@@ -38,6 +38,30 @@ bool usable(const LogEvent& e) {
   return true;
 }
 
+/// Converts the fixes of a log from their CRS by `placed`, which takes the map's, or omits them.
+template <class Placed>
+void place_fixes(RobotLog& log, const Crs& map, const Placed& placed) {
+  const auto is_fix = [](const LogEvent& e) { return std::holds_alternative<GnssFix>(e.what); };
+  const Crs own = Crs::from_text(log.fix_crs);
+  if (map.kind() == CrsKind::local || map.body().name != own.body().name) {
+    if (const std::size_t omitted = std::erase_if(log.events, is_fix))
+      log.remarks.push_back(fmt::format(
+          "{} fixes are omitted: they are positions on {}, {}", omitted, own.body().name,
+          map.kind() == CrsKind::local ? "and the map has a local CRS" : "the map is of " + map.body().name));
+    return;
+  }
+  const CrsTransform to_map(own, map);
+  for (LogEvent& e : log.events)
+    if (auto* fix = std::get_if<GnssFix>(&e.what)) {
+      const auto [x, y] = to_map(fix->at.x(), fix->at.y());
+      fix->at = placed(x, y);
+    }
+  if (const std::size_t omitted = std::erase_if(log.events, [&](const LogEvent& e) {
+        return is_fix(e) && !std::get<GnssFix>(e.what).at.allFinite();
+      }))
+    log.remarks.push_back(fmt::format("{} fixes are omitted: they lie outside of the map's CRS", omitted));
+}
+
 }  // namespace
 
 void RepeatedSightings::predict(const BodyMotion& motion) {
@@ -119,18 +143,23 @@ void clean_log(RobotLog& log, double max_gap) {
 }
 
 void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
-  if (!log.in_crs) return;
   const auto placed = [&](double x, double y) -> Eigen::Vector2d {
     return frame.map_frame_from_crs({{x, y, frame.origin().xyz.z()}}).xyz.head<2>();
   };
+  if (!log.fix_crs.empty()) {
+    place_fixes(log, frame.crs(), placed);
+    log.fix_crs.clear();
+  } else if (log.in_crs) {
+    for (LogEvent& e : log.events)
+      if (auto* fix = std::get_if<GnssFix>(&e.what)) fix->at = placed(fix->at.x(), fix->at.y());
+  }
+  if (!log.in_crs) return;
   const auto place = [&](Pose2& pose) {
     const Eigen::Vector2d at = placed(pose.x, pose.y);
     pose.x = at.x(), pose.y = at.y();
   };
   for (StampedPose& p : log.truth) place(p.pose);
   if (log.start) place(*log.start);
-  for (LogEvent& e : log.events)
-    if (auto* fix = std::get_if<GnssFix>(&e.what)) fix->at = placed(fix->at.x(), fix->at.y());
   log.in_crs = false;
 }
 

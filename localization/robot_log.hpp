@@ -98,7 +98,8 @@ struct RobotLog {
   Ackermann car;
   /// Whether positions (truth, start, fixes) are in the map's CRS, not yet in metres of the map frame.
   bool in_crs = false;
-  std::string crs;  ///< CRS of positions if `in_crs` and given; any text Crs accepts
+  std::string crs;      ///< CRS of positions if `in_crs` and given; any text Crs accepts
+  std::string fix_crs;  ///< CRS of the positions of fixes, whatever `in_crs` says; empty: as the others
   LandmarkNames names;
   ErrorMemory error_memory;                ///< of its sensors
   std::optional<OdometryNoise> odometry;   ///< odometry noise of this vehicle, if log or reader state it
@@ -112,7 +113,8 @@ struct RobotLog {
 /// these, on gaps in the odometry above `max_gap` seconds and on duplicate times.
 void clean_log(RobotLog& log, double max_gap = 1);
 
-/// Converts positions from the map's CRS to its frame. Does nothing if they are in the frame already.
+/// Converts positions from the map's CRS, and those of fixes from `fix_crs`, to the map's frame. Does nothing
+/// if they are in the frame already. Fixes that have no position in the map are omitted, with a remark.
 void convert_to_map_frame(RobotLog& log, const LocalFrame& frame);
 
 /// Interpolates the pose at a time linearly between two known poses, yaw the short way round.

@@ -59,7 +59,7 @@ class Localize final : public Command {
              Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
                       "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
              Argument{"--topic", "NAME", &request_.log_format.topics,
-                      "Read this topic of a bag that has several of odometry or of scans; may be repeated"}
+                      "Read this topic of a bag that has several of its type; may be repeated"}
                  .or_else("that with the most messages"),
              Argument{"--robot", "K", &request_.log_format.robot, "Number of the robot in an MRCLAM dataset"},
              Argument{"--ids", "HOW", &ids_, "Whether identities in the log are used for data association"}

@@ -44,7 +44,7 @@ class MapDrive final : public Command {
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})
                  .or_else("recognised by the files"),
              Argument{"--topic", "NAME", &request_.log_format.topics,
-                      "Read this topic of a bag that has several of odometry or of scans; may be repeated"}
+                      "Read this topic of a bag that has several of its type; may be repeated"}
                  .or_else("that with the most messages"),
              Argument{"--robot", "K", &request_.log_format.robot,
                       "Number of the robot in an MRCLAM dataset"}},

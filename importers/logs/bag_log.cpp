@@ -12,39 +12,48 @@
 
 #include "core/error.hpp"
 #include "importers/logs/bag_file.hpp"
-#include "importers/logs/cdr.hpp"
+#include "importers/logs/bag_messages.hpp"
 #include "importers/logs/frame_tree.hpp"
+#include "importers/logs/gyro_yaw.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/odometry_steps.hpp"
+#include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
 
 namespace waymark::importers {
 namespace {
 
-constexpr double kMaxTilt = 0.2;  // rad: a level scan 10 m away is then 2 m higher or lower
+constexpr double kMaxTilt = 0.2;       // rad: a level scan 10 m away is then 2 m higher or lower
+constexpr double kGyroBias = 0.005;    // rad/s, of small gyros; it is estimated with the pose
+constexpr double kGyroScaleSd = 0.01;  // relative error of their rate
 
-struct Stamp {
-  double t = 0;
-  std::string frame;
-};
 struct OdometryTopic {
-  std::string body;  // frame that the poses are of
-  std::vector<localization::StampedPose> poses;
+  std::string body = {};  // frame that the poses are of
+  std::vector<localization::StampedPose> poses = {};
+  std::size_t unknown_yaws = 0;  // poses that state no use of their yaw
+
+  // Drivers state a large variance for what they do not measure, or leave the yaw at 0.
+  bool lacks_yaw() const {
+    const auto differs = [&](const localization::StampedPose& p) { return p.pose.yaw != poses[0].pose.yaw; };
+    return 2 * unknown_yaws > poses.size() || (poses.size() > 1 && std::ranges::none_of(poses, differs));
+  }
 };
 struct ScanTopic {
-  std::string frame;
-  std::vector<localization::LogEvent> scans;
+  std::string frame = {};
+  std::vector<localization::LogEvent> scans = {};
 };
-
-Eigen::Isometry3d transform(CdrReader& in) {
-  Eigen::Vector3d at;
-  for (double& v : at) v = in.number<double>();
-  Eigen::Quaterniond turn;
-  for (double& v : turn.coeffs()) v = in.number<double>();  // x y z w, as Eigen keeps them
-  if (!(at.allFinite() && std::abs(turn.norm() - 1) < 0.1))
-    throw std::runtime_error("a pose is not finite or its quaternion is not of length 1");
-  return Eigen::Translation3d(at) * turn.normalized();
-}
+struct ImuTopic {
+  std::vector<BagImu> readings = {};
+};
+struct FixTopic {
+  std::string frame = {};
+  std::vector<BagFix> fixes = {};
+  std::size_t without_fix = 0;
+};
+struct CloudTopic {
+  std::string frame = {};
+  std::size_t clouds = 0;
+};
 
 localization::Pose2 level(const Eigen::Isometry3d& pose) {
   return {pose.translation().x(), pose.translation().y(), std::atan2(pose(1, 0), pose(0, 0))};
@@ -56,73 +65,128 @@ void turn_over(localization::LaserScan& scan) {
   std::ranges::reverse(scan.ranges);
 }
 
+/// Point clouds of one topic that are read in a second pass, as they do not fit into memory together.
+struct ChosenClouds {
+  std::string topic;
+  Eigen::Isometry3d body_from_sensor = Eigen::Isometry3d::Identity();
+};
+
 class BagReader {
  public:
   BagReader(const std::filesystem::path& path, const std::vector<std::string>& topics)
       : path_(path), wanted_(topics) {}
 
   void read(const BagMessage& message) {
-    try {
+    guarded(message, [&] {
       if (message.type == "nav_msgs/msg/Odometry")
         odometry(message);
       else if (message.type == "sensor_msgs/msg/LaserScan")
         scan(message);
       else if (message.type == "tf2_msgs/msg/TFMessage")
         frames(message);
+      else if (message.type == "sensor_msgs/msg/Imu")
+        imu(message);
+      else if (message.type == "sensor_msgs/msg/NavSatFix")
+        fix(message);
+      else if (message.type == "sensor_msgs/msg/PointCloud2")
+        cloud(message);
       else
-        ++others_[std::string(message.type)];
-    } catch (const std::runtime_error& problem) {
-      if (++unsound_ == 1) first_unsound_ = fmt::format("of topic {}: {}", message.topic, problem.what());
-    }
+        ++others_[{std::string(message.topic), std::string(message.type)}];
+    });
   }
 
-  localization::RobotLog take(std::vector<std::string> remarks) {
-    log_.remarks = std::move(remarks);
-    if (odometry_.empty() && scans_.empty())
+  /// Returns the topic of point clouds to read with read_clouds(), if there is any.
+  std::optional<ChosenClouds> choose_clouds() {
+    const auto chosen =
+        largest(clouds_, "point clouds are", [](const CloudTopic& topic) { return topic.clouds; });
+    if (chosen == clouds_.end()) return {};
+    const auto place = place_of(chosen->second.frame, body());
+    return ChosenClouds{chosen->first, place};
+  }
+
+  /// Reads a point cloud of the chosen topic and keeps what is detected in it.
+  void read_cloud_of(const ChosenClouds& chosen, const localization::PointDetector& detect,
+                     const BagMessage& message) {
+    if (message.topic != chosen.topic || message.type != "sensor_msgs/msg/PointCloud2") return;
+    guarded(message, [&] {
+      BagCloud cloud = read_cloud(message);
+      const localization::Pose2 mount = level(chosen.body_from_sensor);
+      const Eigen::Matrix3f upright =
+          (Eigen::AngleAxisd(-mount.yaw, Eigen::Vector3d::UnitZ()) * chosen.body_from_sensor.linear())
+              .cast<float>();
+      for (Eigen::Vector3f& point : cloud.points) point = upright * point;
+      log_.events.push_back(
+          {cloud.at.t, detect({.robot_from_sensor = mount, .points = std::move(cloud.points)})});
+    });
+  }
+
+  void leave_clouds_out(const std::string& topic) {
+    log_.remarks.push_back(
+        fmt::format("{} point clouds of {} are not used: the map has no landmarks that 3-D scans show",
+                    clouds_[topic].clouds, topic));
+  }
+
+  void check() const {
+    if (odometry_.empty() && scans_.empty() && fixes_.empty() && clouds_.empty())
       throw Error(
           ErrorCode::input,
           unsound_ ? fmt::format("no message of the bag can be read; the first bad one is {}", first_unsound_)
                    : "the bag has neither odometry nor scans",
-          path_.string(), "nav_msgs/msg/Odometry and sensor_msgs/msg/LaserScan are read");
+          path_.string(),
+          "Odometry of nav_msgs, and LaserScan, PointCloud2, Imu and NavSatFix of sensor_msgs are read");
     check_wanted();
+  }
+
+  localization::RobotLog take(std::vector<std::string> remarks) {
+    std::ranges::move(log_.remarks, std::back_inserter(remarks));
+    log_.remarks = std::move(remarks);
     if (unsound_)
       log_.remarks.push_back(fmt::format("{} messages cannot be read and are skipped, the first is {}",
                                          unsound_, first_unsound_));
-    for (const auto& [type, count] : others_)
-      log_.remarks.push_back(fmt::format("{} messages of type {} are skipped", count, type));
-    std::string body = "base_link";
+    for (const auto& [what, count] : others_)
+      log_.remarks.push_back(
+          fmt::format("{} messages of type {} of {} are skipped", count, what.second, what.first));
+    const std::string base = body();
+    const auto scans =
+        largest(scans_, "scans are", [](const ScanTopic& topic) { return topic.scans.size(); });
+    if (scans != scans_.end()) mount(scans->second, base);
+    add_fixes(base);
     std::vector<localization::StampedPose> poses;
-    if (OdometryTopic* chosen = largest(odometry_, "odometry is", &OdometryTopic::poses)) {
-      body = chosen->body;
-      poses = std::move(chosen->poses);
+    const auto odometry = chosen_odometry();
+    bool lacks_yaw = false;
+    if (odometry != odometry_.end()) {
+      lacks_yaw = odometry->second.lacks_yaw();
+      poses = std::move(odometry->second.poses);
+      std::ranges::stable_sort(poses, {}, &localization::StampedPose::t);
     }
-    if (ScanTopic* chosen = largest(scans_, "scans are", &ScanTopic::scans)) mount(*chosen, body);
+    add_imu(base, poses, lacks_yaw);
     add_odometry_steps(log_, std::move(poses));
     localization::clean_log(log_);
     return std::move(log_);
   }
 
  private:
-  static Stamp stamp(CdrReader& in, std::int64_t received) {
-    const auto seconds = in.number<std::int32_t>();
-    const auto nanoseconds = in.number<std::uint32_t>();
-    const double t = seconds + nanoseconds / 1e9;
-    return {t != 0 ? t : static_cast<double>(received) / 1e9, in.text()};  // 0: drivers that set no stamp
+  template <class Read>
+  void guarded(const BagMessage& message, const Read& read) {
+    try {
+      read();
+    } catch (const std::runtime_error& problem) {
+      if (++unsound_ == 1) first_unsound_ = fmt::format("of topic {}: {}", message.topic, problem.what());
+    }
   }
 
   void odometry(const BagMessage& message) {
-    CdrReader in(message.bytes);
-    const Stamp at = stamp(in, message.received);
-    std::string body = in.text();
-    const Eigen::Isometry3d pose = transform(in);
+    BagOdometry one = read_odometry(message);
     OdometryTopic& topic = odometry_[std::string(message.topic)];
-    if (topic.poses.empty()) topic.body = std::move(body);
-    topic.poses.push_back({at.t, level(pose)});
+    if (topic.poses.empty()) topic.body = std::move(one.body);
+    topic.poses.push_back({one.at.t, level(one.pose)});
+    constexpr double kAnyYaw = std::numbers::pi * std::numbers::pi;  // rad^2; nothing is known of such a yaw
+    topic.unknown_yaws += !(one.yaw_variance >= 0 && one.yaw_variance < kAnyYaw);
   }
 
   void scan(const BagMessage& message) {
     CdrReader in(message.bytes);
-    Stamp at = stamp(in, message.received);
+    BagStamp at = read_stamp(in, message.received);
     const double first = in.number<float>();
     in.number<float>();  // last angle
     const double step = in.number<float>();
@@ -147,37 +211,59 @@ class BagReader {
     constexpr std::size_t kMinSize = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, transform
     CdrReader in(message.bytes);
     for (std::size_t n = in.count(kMinSize); n > 0; --n) {
-      const Stamp at = stamp(in, message.received);
+      const BagStamp at = read_stamp(in, message.received);
       const std::string child = in.text();
-      frames_.place(child, at.frame, transform(in));
+      frames_.place(child, at.frame, read_transform(in));
     }
+  }
+
+  void imu(const BagMessage& message) {
+    imus_[std::string(message.topic)].readings.push_back(read_imu(message));
+  }
+
+  void fix(const BagMessage& message) {
+    BagFix one = read_fix(message);
+    FixTopic& topic = fixes_[std::string(message.topic)];
+    if (topic.frame.empty()) topic.frame = one.at.frame;
+    if (one.is_fix)
+      topic.fixes.push_back(std::move(one));
+    else
+      ++topic.without_fix;
+  }
+
+  void cloud(const BagMessage& message) {
+    const BagStamp at = read_cloud_stamp(message);
+    CloudTopic& topic = clouds_[std::string(message.topic)];
+    if (topic.clouds++ == 0) topic.frame = at.frame;
   }
 
   void check_wanted() const {
     std::vector<std::string> known;
-    for (const auto& [name, topic] : odometry_) known.push_back(name);
-    for (const auto& [name, topic] : scans_) known.push_back(name);
+    const auto add = [&](const auto& topics) {
+      for (const auto& [name, topic] : topics) known.push_back(name);
+    };
+    add(odometry_), add(scans_), add(clouds_), add(imus_), add(fixes_);
     for (const std::string& name : wanted_)
       if (std::ranges::find(known, name) == known.end())
-        throw Error(ErrorCode::usage, "the bag has no odometry and no scans of the topic " + name,
+        throw Error(ErrorCode::usage, "the bag has no messages that are read of the topic " + name,
                     path_.string(), fmt::format("it has them of {}", fmt::join(known, ", ")));
   }
 
-  // A bag may hold raw and filtered odometry, or several scanners.
-  template <class Topic, class Member>
-  Topic* largest(std::map<std::string, Topic>& topics, const char* what, Member member) {
-    if (topics.empty()) return nullptr;
+  // A bag may hold raw and filtered odometry, or several scanners. Returns the end if there is no topic.
+  template <class Topic, class Count>
+  typename std::map<std::string, Topic>::iterator largest(std::map<std::string, Topic>& topics,
+                                                          const char* what, const Count& count) {
+    if (topics.empty()) return topics.end();
     const auto is_wanted = [&](const auto& topic) {
       return std::ranges::find(wanted_, topic.first) != wanted_.end();
     };
     if (std::ranges::count_if(topics, is_wanted) > 1)
       throw Error(ErrorCode::usage, fmt::format("several of the topics that {} read from are named", what),
-                  path_.string(), "name one topic of odometry and one of scans");
+                  path_.string(), "name one topic of odometry, one of scans, and one of each other kind");
     auto chosen = std::ranges::find_if(topics, is_wanted);
     const char* why = "as asked";
     if (chosen == topics.end()) {
-      chosen = std::ranges::max_element(
-          topics, {}, [&](const auto& topic) { return std::invoke(member, topic.second).size(); });
+      chosen = std::ranges::max_element(topics, {}, [&](const auto& topic) { return count(topic.second); });
       why = "which has the most messages";
     }
     std::vector<std::string> unused;
@@ -186,16 +272,32 @@ class BagReader {
     if (!unused.empty())
       log_.remarks.push_back(
           fmt::format("{} read from {}, {}; not from {}", what, chosen->first, why, fmt::join(unused, ", ")));
-    return &chosen->second;
+    return chosen;
+  }
+
+  /// Chosen once, as the choice makes a remark.
+  std::map<std::string, OdometryTopic>::iterator chosen_odometry() {
+    if (!odometry_chosen_)
+      odometry_chosen_ =
+          largest(odometry_, "odometry is", [](const auto& topic) { return topic.poses.size(); });
+    return *odometry_chosen_;
+  }
+  std::string body() {
+    const auto odometry = chosen_odometry();
+    return odometry == odometry_.end() ? "base_link" : odometry->second.body;
+  }
+
+  Eigen::Isometry3d place_of(const std::string& sensor, const std::string& body) {
+    const auto body_from_sensor = frames_.transform(body, sensor);
+    if (!body_from_sensor)
+      log_.remarks.push_back(fmt::format(
+          "no transform leads from {} to {}: the sensor is taken to be in the middle of the robot", sensor,
+          body));
+    return body_from_sensor.value_or(Eigen::Isometry3d::Identity());
   }
 
   void mount(ScanTopic& topic, const std::string& body) {
-    const auto body_from_sensor = frames_.transform(body, topic.frame);
-    if (!body_from_sensor)
-      log_.remarks.push_back(fmt::format(
-          "no transform leads from {} to {}: the scanner is taken to be in the middle of the robot",
-          topic.frame, body));
-    const Eigen::Isometry3d place = body_from_sensor.value_or(Eigen::Isometry3d::Identity());
+    const Eigen::Isometry3d place = place_of(topic.frame, body);
     if (!(std::abs(place(2, 2)) >= std::cos(kMaxTilt)))
       throw Error(ErrorCode::input,
                   fmt::format("the scanner {} is tilted by {:.0f} degrees", topic.frame,
@@ -206,19 +308,141 @@ class BagReader {
       scan.robot_from_sensor = level(place);
       if (place(2, 2) < 0) turn_over(scan);
     }
-    log_.events = std::move(topic.scans);
+    std::ranges::move(topic.scans, std::back_inserter(log_.events));
+  }
+
+  void add_fixes(const std::string& body) {
+    const auto chosen = largest(fixes_, "satellite fixes are",
+                                [](const FixTopic& topic) { return topic.fixes.size() + topic.without_fix; });
+    if (chosen == fixes_.end()) return;
+    const FixTopic& topic = chosen->second;
+    if (topic.without_fix)
+      log_.remarks.push_back(fmt::format("{} messages of {} are without a satellite fix and are skipped",
+                                         topic.without_fix, chosen->first));
+    if (topic.fixes.empty()) return;
+    // A fix is the place of the antenna, and a heading to move it by is not certain: its distance from the
+    // robot's middle is an error.
+    const double arm = place_of(topic.frame, body).translation().head<2>().norm();
+    std::size_t unstated = 0;
+    for (const BagFix& fix : topic.fixes) {
+      constexpr double kUnstatedSd = 3;  // m, as of a record `gnss` without `sd`
+      unstated += !(fix.sd > 0);
+      const double sd = fix.sd > 0 ? fix.sd : kUnstatedSd;
+      log_.events.push_back(
+          {fix.at.t, localization::GnssFix{{fix.longitude, fix.latitude}, std::hypot(sd, arm)}});
+    }
+    log_.fix_crs = "EPSG:4326";
+    std::string remark =
+        fmt::format("{} satellite fixes are read from {}", topic.fixes.size(), chosen->first);
+    if (unstated) remark += fmt::format("; {} state no covariance and get 3 m", unstated);
+    if (arm > 0)
+      remark += fmt::format("; the antenna is {:.2g} m from the robot's middle, an error that is added", arm);
+    log_.remarks.push_back(remark);
+  }
+
+  void add_imu(const std::string& body, std::vector<localization::StampedPose>& poses, bool lacks_yaw) {
+    const auto chosen =
+        largest(imus_, "inertial readings are", [](const ImuTopic& topic) { return topic.readings.size(); });
+    if (chosen == imus_.end()) return;
+    std::vector<BagImu>& readings = chosen->second.readings;
+    std::ranges::stable_sort(readings, {}, [](const BagImu& one) { return one.at.t; });
+    const Eigen::Matrix3d turn = place_of(readings[0].at.frame, body).linear();
+    add_rates(chosen->first, readings, turn, poses, lacks_yaw);
+    add_headings(chosen->first, readings, turn);
+  }
+
+  void add_rates(const std::string& topic, const std::vector<BagImu>& readings,
+                 const Eigen::Matrix3d& body_from_imu, std::vector<localization::StampedPose>& poses,
+                 bool lacks_yaw) {
+    std::vector<TurnRate> rates;
+    for (const BagImu& one : readings)
+      if (one.rate) rates.push_back({one.at.t, (body_from_imu * *one.rate).z(), one.rate_variance});
+    if (rates.empty()) return;
+    if (poses.empty() || !lacks_yaw || rates.size() < 2) {
+      log_.remarks.push_back(fmt::format("{} angular velocities of {} are not used: {}", rates.size(), topic,
+                                         poses.empty() ? "there is no odometry"
+                                         : !lacks_yaw  ? "the odometry has a yaw"
+                                                       : "two are needed"));
+      return;
+    }
+    poses = with_yaw_of_gyro(std::move(poses), rates);
+    std::string remark =
+        fmt::format("the odometry has no yaw: {} angular velocities of {} give it", rates.size(), topic);
+    if (const double variance = yaw_variance_per_second(rates); variance > 0) {
+      log_.odometry.emplace();
+      log_.odometry->yaw_per_metre = 0;
+      log_.odometry->yaw_per_radian = kGyroScaleSd * kGyroScaleSd;
+      log_.odometry->yaw_per_second = variance;
+      log_.drift.yaw_rate_sd = kGyroBias;
+    } else {
+      remark += "; they state no covariance";
+    }
+    log_.remarks.push_back(remark);
+  }
+
+  void add_headings(const std::string& topic, const std::vector<BagImu>& readings,
+                    const Eigen::Matrix3d& body_from_imu) {
+    std::size_t used = 0, unstated = 0;
+    for (const BagImu& one : readings) {
+      if (!one.orientation) continue;
+      if (!(one.yaw_variance > 0)) {
+        ++unstated;
+        continue;
+      }
+      const Eigen::Matrix3d world_from_body = one.orientation->toRotationMatrix() * body_from_imu.transpose();
+      log_.events.push_back(
+          {one.at.t, localization::HeadingFix{std::atan2(world_from_body(1, 0), world_from_body(0, 0)),
+                                              std::sqrt(one.yaw_variance)}});
+      ++used;
+    }
+    if (used)
+      log_.remarks.push_back(
+          fmt::format("{} orientations of {} are read as a compass; if its yaw does not start at east, --set "
+                      "use_fixes=false "
+                      "leaves it out",
+                      used, topic));
+    if (unstated)
+      log_.remarks.push_back(
+          fmt::format("{} orientations of {} state no covariance and are not used", unstated, topic));
   }
 
   const std::filesystem::path& path_;
   const std::vector<std::string>& wanted_;
   localization::RobotLog log_;
   std::map<std::string, OdometryTopic> odometry_;
+  std::optional<std::map<std::string, OdometryTopic>::iterator> odometry_chosen_;
   std::map<std::string, ScanTopic> scans_;
+  std::map<std::string, ImuTopic> imus_;
+  std::map<std::string, FixTopic> fixes_;
+  std::map<std::string, CloudTopic> clouds_;
   FrameTree frames_;
-  std::map<std::string, std::size_t> others_;
+  std::map<std::pair<std::string, std::string>, std::size_t> others_;  // by topic and type
   std::size_t unsound_ = 0;
   std::string first_unsound_;
 };
+
+/// Returns whether a detector of 3-D scans makes a type that the map holds.
+bool shows_in_clouds(const TypeRegistry& types, std::span<const TypeId> held) {
+  const auto is_held = [&](const std::string& name) {
+    const auto type = localization::type_in_map(types, name);
+    return type && (held.empty() || std::ranges::find(held, *type) != held.end());
+  };
+  return std::ranges::any_of(localization::point_detectors(),
+                             [&](const localization::DetectorSpec& detector) {
+                               return std::ranges::any_of(detector.types, is_held);
+                             });
+}
+
+std::vector<std::string> visit_bag(const std::filesystem::path& path, const BagVisitor& visit) {
+  std::vector<std::string> remarks;
+  for (const std::filesystem::path& file : bag_files(path)) {
+    if (file.extension() == ".mcap")
+      std::ranges::move(visit_mcap(file, visit), std::back_inserter(remarks));
+    else
+      visit_rosbag2(file, visit);
+  }
+  return remarks;
+}
 
 }  // namespace
 
@@ -232,16 +456,19 @@ std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path) 
   return files;
 }
 
-localization::RobotLog import_bag_log(const std::filesystem::path& path,
-                                      const std::vector<std::string>& topics) {
+localization::RobotLog import_bag_log(const std::filesystem::path& path, const TypeRegistry& types,
+                                      const std::vector<std::string>& topics, std::span<const TypeId> held) {
   BagReader reader(path, topics);
-  const BagVisitor visit = [&](const BagMessage& message) { reader.read(message); };
-  std::vector<std::string> remarks;
-  for (const std::filesystem::path& file : bag_files(path)) {
-    if (file.extension() == ".mcap")
-      std::ranges::move(visit_mcap(file, visit), std::back_inserter(remarks));
-    else
-      visit_rosbag2(file, visit);
+  std::vector<std::string> remarks =
+      visit_bag(path, [&](const BagMessage& message) { reader.read(message); });
+  reader.check();
+  if (const auto clouds = reader.choose_clouds()) {
+    if (shows_in_clouds(types, held)) {
+      const localization::PointDetector detect = localization::make_point_detector(types, held);
+      visit_bag(path, [&](const BagMessage& message) { reader.read_cloud_of(*clouds, detect, message); });
+    } else {
+      reader.leave_clouds_out(clouds->topic);
+    }
   }
   return reader.take(std::move(remarks));
 }

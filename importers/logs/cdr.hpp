@@ -50,6 +50,9 @@ class CdrReader {
     return n;
   }
 
+  /// Returns the next `size` bytes of the message.
+  std::string_view bytes(std::size_t size) { return {take(size), size}; }
+
   std::vector<float> floats() {
     std::vector<float> all(count(sizeof(float)));
     for (float& value : all) value = number<float>();

@@ -70,7 +70,7 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "carmen") return import_carmen_log(path);
-  if (format == "rosbag2" || format == "mcap") return import_bag_log(path, how.topics);
+  if (format == "rosbag2" || format == "mcap") return import_bag_log(path, types, how.topics, how.held_types);
   if (format == "points") return import_point_log(path, types, how.held_types);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(

@@ -3,6 +3,7 @@
 #include <sqlite3.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -75,6 +76,123 @@ inline MadeMessage made_scan(bool big, double t, double first, double step, cons
   for (const float r : ranges) cdr.add(r);
   cdr.add(std::uint32_t{0});
   return {topic, "sensor_msgs/msg/LaserScan", cdr.bytes()};
+}
+
+/// `covariance` is the first element of the 3 x 3 matrix of the orientation or the rate; its last is the
+/// variance of the yaw or of the rate about z.
+struct MadeImu {
+  double orientation_first = -1, yaw = 0, yaw_variance = 0;
+  double rate_first = 0, rate = 0, rate_variance = 0;
+  bool over =
+      false;  ///< the sensor hangs upside down: `yaw` and `rate` are about the z axis that points down
+  std::string topic = "/imu";
+};
+inline MadeMessage made_imu(bool big, double t, const MadeImu& imu) {
+  MadeCdr cdr(big);
+  cdr.header(t, "imu");
+  if (imu.over)
+    cdr.add(std::cos(imu.yaw / 2)).add(std::sin(imu.yaw / 2)).add(0.0).add(0.0);
+  else
+    cdr.add(0.0).add(0.0).add(std::sin(imu.yaw / 2)).add(std::cos(imu.yaw / 2));
+  const auto covariance = [&](double first, double last) {
+    cdr.add(first);
+    for (int i = 1; i < 8; ++i) cdr.add(0.0);
+    cdr.add(last);
+  };
+  covariance(imu.orientation_first, imu.yaw_variance);
+  cdr.add(0.0).add(0.0).add(imu.rate);
+  covariance(imu.rate_first, imu.rate_variance);
+  for (int i = 0; i < 3 + 9; ++i) cdr.add(0.0);
+  return {imu.topic, "sensor_msgs/msg/Imu", cdr.bytes()};
+}
+
+struct MadeFix {
+  int status = 0;
+  double latitude = 48, longitude = 11;
+  double east = 4, east_north = 0, north = 4;  ///< covariance, m^2
+  int covariance_type = 3;
+};
+inline MadeMessage made_fix(bool big, double t, const MadeFix& fix) {
+  MadeCdr cdr(big);
+  cdr.header(t, "gps").add(static_cast<std::int8_t>(fix.status)).add(std::uint16_t{1});
+  cdr.add(fix.latitude).add(fix.longitude).add(500.0);
+  for (const double v : {fix.east, fix.east_north, 0.0, fix.east_north, fix.north, 0.0, 0.0, 0.0, 9.0})
+    cdr.add(v);
+  cdr.add(static_cast<std::uint8_t>(fix.covariance_type));
+  return {"/fix", "sensor_msgs/msg/NavSatFix", cdr.bytes()};
+}
+
+struct MadeField {
+  std::string name;
+  std::uint32_t offset = 0;
+  int type = 7;  ///< 1 to 8: int8, uint8, int16, uint16, int32, uint32, float32, float64
+};
+/// Layout of a point cloud.
+struct MadeCloud {
+  std::vector<MadeField> fields{{"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}};
+  std::uint32_t point_step = 12, rows = 1;
+  std::uint32_t row_padding = 0;
+  bool big_data = false;  ///< numbers of the points are big-endian, whatever the order of the message
+  std::string topic = "/points";
+  std::string frame = "scanner";
+};
+inline MadeMessage made_cloud(bool big, double t, const std::vector<std::array<double, 3>>& points,
+                              const MadeCloud& cloud = {}) {
+  const auto columns = static_cast<std::uint32_t>(points.size()) / cloud.rows;
+  const std::uint32_t row_step = columns * cloud.point_step + cloud.row_padding;
+  std::string data(std::size_t{row_step} * cloud.rows, '\xee');
+  for (std::uint32_t i = 0; i < columns * cloud.rows; ++i)
+    for (const MadeField& field : cloud.fields) {
+      const std::size_t at =
+          std::size_t{i / columns} * row_step + std::size_t{i % columns} * cloud.point_step + field.offset;
+      const auto put = [&](auto value) {
+        char raw[sizeof value];
+        std::memcpy(raw, &value, sizeof value);
+        if (cloud.big_data) std::reverse(raw, raw + sizeof value);
+        std::memcpy(data.data() + at, raw, sizeof value);
+      };
+      const double value = field.name == "x"   ? points[i][0]
+                           : field.name == "y" ? points[i][1]
+                           : field.name == "z" ? points[i][2]
+                                               : 77;
+      switch (field.type) {
+        case 1:
+          put(static_cast<std::int8_t>(value));
+          break;
+        case 2:
+          put(static_cast<std::uint8_t>(value));
+          break;
+        case 3:
+          put(static_cast<std::int16_t>(value));
+          break;
+        case 4:
+          put(static_cast<std::uint16_t>(value));
+          break;
+        case 5:
+          put(static_cast<std::int32_t>(value));
+          break;
+        case 6:
+          put(static_cast<std::uint32_t>(value));
+          break;
+        case 7:
+          put(static_cast<float>(value));
+          break;
+        default:
+          put(value);
+      }
+    }
+  MadeCdr cdr(big);
+  cdr.header(t, cloud.frame)
+      .add(cloud.rows)
+      .add(columns)
+      .add(static_cast<std::uint32_t>(cloud.fields.size()));
+  for (const MadeField& field : cloud.fields)
+    cdr.text(field.name).add(field.offset).add(static_cast<std::uint8_t>(field.type)).add(std::uint32_t{1});
+  cdr.add(static_cast<std::uint8_t>(cloud.big_data)).add(cloud.point_step).add(row_step);
+  cdr.add(static_cast<std::uint32_t>(data.size()));
+  for (const char c : data) cdr.add(c);
+  cdr.add(std::uint8_t{0});
+  return {cloud.topic, "sensor_msgs/msg/PointCloud2", cdr.bytes()};
 }
 
 inline MadeMessage made_frame(bool big, const std::string& parent, const std::string& child, double x,

@@ -248,7 +248,8 @@ TEST_F(Bag, BadMessagesAreSkippedAndCounted) {
   EXPECT_THAT(log.remarks,
               Contains(HasSubstr("3 messages cannot be read and are skipped, the first is of topic "
                                  "/odom: the message ends too early")));
-  EXPECT_THAT(log.remarks, Contains(HasSubstr("1 messages of type sensor_msgs/msg/Image are skipped")));
+  EXPECT_THAT(log.remarks,
+              Contains(HasSubstr("1 messages of type sensor_msgs/msg/Image of /camera are skipped")));
 }
 
 TEST_F(Bag, RefusalsSayWhatToDo) {
