@@ -282,7 +282,7 @@ RockImage render(const RockScene& scene) {
         if (!is_above(of)) break;
         bits = of.bits;
       }
-      if (bits > 0) {  // steps of two samples, of which the last within the square is looked at again
+      if (bits > 0) {  // steps of two samples; the last one within the square is looked at again
         const double steps = std::min(steps_within(x, cx, pu, bits), steps_within(y, cy, pv, bits)) - 0.01;
         t += steps > 4 ? 2 * static_cast<double>(static_cast<std::int64_t>(steps / 2)) : 2;
         continue;
