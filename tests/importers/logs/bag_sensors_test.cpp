@@ -9,6 +9,7 @@
 #include <random>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "geo/local_frame.hpp"
 #include "importers/logs/bag_messages.hpp"
 #include "importers/logs/gyro_yaw.hpp"
@@ -380,8 +381,7 @@ TEST_F(BagSensors, MutatedFilesAreReadOrRefused) {
     bag.push_back(made_cloud(i % 2 != 0, 10 + i, {{1, 2, 3}, {4, 5, 6}, {7, 8, 9}, {1, 1, 1}}, {.rows = 2}));
   }
   write_rosbag2(folder_ / "whole.db3", bag);
-  std::ifstream in(folder_ / "whole.db3", std::ios::binary);
-  const std::string database((std::istreambuf_iterator<char>(in)), {});
+  const std::string database = read_text(folder_ / "whole.db3", "the bag");
   int refused = 0, read = 0;
   for (unsigned seed = 0; seed < 200; ++seed) {
     std::mt19937 random(seed);
