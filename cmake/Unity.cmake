@@ -8,7 +8,7 @@ set(alone
   core/solve/cholesky.cpp core/solve/inverse_by_lu.cpp core/solve/least_squares.cpp core/solve/rotation_between.cpp
   core/solve/singular_values.cpp core/solve/solve_symmetric.cpp core/solve/symmetric_eigen.cpp
   geo/proj_version.cpp geo/terrain_pyramid.cpp
-  exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/report/track_picture.cpp exporters/vector/ogr_output.cpp
+  exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/report/track_picture.cpp exporters/vector/ogr_output.cpp exporters/web/web_shapes.cpp
   geodb/library_versions.cpp geodb/geopackage/geometry_blob.cpp geodb/geopackage/shape_blob.cpp
   importers/cameras/formats/opk.cpp importers/logs/bag_cloud.cpp importers/logs/bag_messages.cpp importers/logs/gyro_yaw.cpp importers/logs/log_line.cpp importers/logs/waymark_log.cpp importers/cameras/world_to_grid.cpp importers/images/find_images.cpp importers/images/sun_position.cpp
   importers/points/canopy_codec.cpp importers/points/inspect_canopy.cpp importers/rasters/mosaic.cpp importers/stages/load_dem.cpp

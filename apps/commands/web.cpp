@@ -21,6 +21,7 @@ class Web final : public Command {
             "The page needs the libraries MapLibre GL JS and pmtiles in its folder `lib`. They are not part "
             "of Waymark: the program `fetch-maplibre` in the folder fetches and checks them, or --assets "
             "copies them. Afterwards the page needs no other server.\n\n"
+            "Stands and tree crowns of the map are shown as areas.\n\n"
             "Other bodies than the Earth have a scale bar of their own radius. Maps of a local CRS, and "
             "polar "
             "ones, are drawn to scale on a plane. The result does not depend on --threads.",
@@ -67,6 +68,8 @@ class Web final : public Command {
                                    {"max_zoom", std::int64_t{made.max_zoom}},
                                    {"landmark_tiles", made.landmark_tiles},
                                    {"terrain_tiles", made.terrain_tiles},
+                                   {"areas", made.shapes},
+                                   {"area_tiles", made.shape_tiles},
                                    {"has_library", made.has_library}});
     return 0;
   }
@@ -79,6 +82,8 @@ class Web final : public Command {
             {"max_zoom", ResultKind::integer, "Zoom that shows all landmarks"},
             {"landmark_tiles", ResultKind::integer, "Tiles of landmarks"},
             {"terrain_tiles", ResultKind::integer, "Tiles of terrain; 0 without a DEM"},
+            {"areas", ResultKind::integer, "Polygons of stands and crowns"},
+            {"area_tiles", ResultKind::integer, "Tiles of them"},
             {"has_library", ResultKind::flag, "Whether the map library is in the folder"}};
   }
 

@@ -88,29 +88,55 @@ class Numbering {
   std::vector<Key> used_;
 };
 
-struct LayerWriter {
+class LayerWriter {
+ public:
   std::string features = {};
   Numbering<std::uint64_t> keys = {};
   Numbering<std::string_view> values = {};
 
   void add(const TilePoint& point) {
+    std::string geometry;
+    append_varint(geometry, kMoveToOnce);
+    append_varint(geometry, zigzag(point.x));
+    append_varint(geometry, zigzag(point.y));
+    add_feature(point.id, kPoint, geometry, point.properties);
+  }
+
+  void add(const TilePolygon& polygon) {
+    std::string geometry;
+    std::array<std::int32_t, 2> at{0, 0};
+    const auto move = [&](const std::array<std::int32_t, 2>& to) {
+      for (std::size_t axis = 0; axis < 2; ++axis)
+        append_varint(geometry, zigzag(std::int64_t{to[axis]} - at[axis]));
+      at = to;
+    };
+    for (const TilePolygon::Ring& ring : polygon.rings) {
+      append_varint(geometry, kMoveToOnce);
+      move(ring.front());
+      append_varint(geometry, (ring.size() - 1) << 3 | 2);  // LineTo
+      for (std::size_t i = 1; i < ring.size(); ++i) move(ring[i]);
+      append_varint(geometry, 1 << 3 | 7);  // ClosePath
+    }
+    add_feature(polygon.id, kPolygon, geometry, polygon.properties);
+  }
+
+ private:
+  static constexpr std::uint64_t kMoveToOnce = 1 << 3 | 1, kPoint = 1, kPolygon = 3;
+
+  void add_feature(std::uint64_t id, std::uint64_t kind, const std::string& geometry,
+                   const std::vector<std::string_view>& properties) {
     std::string tags;
-    for (std::string_view list : point.properties)
+    for (std::string_view list : properties)
       while (!list.empty()) {
         append_varint(tags, keys(take_varint(list)));
         const std::uint64_t size = take_varint(list);
         append_varint(tags, values(list.substr(0, size)));
         list.remove_prefix(size);
       }
-    std::string geometry;
-    constexpr std::uint64_t move_to_once = 1 << 3 | 1;
-    append_varint(geometry, move_to_once);
-    append_varint(geometry, zigzag(point.x));
-    append_varint(geometry, zigzag(point.y));
     std::string feature;
-    append_number(feature, 1, point.id);
+    append_number(feature, 1, id);
     append_bytes(feature, 2, tags);
-    append_number(feature, 3, 1);  // POINT
+    append_number(feature, 3, kind);
     append_bytes(feature, 4, geometry);
     append_bytes(features, 2, feature);
   }
@@ -134,9 +160,10 @@ void append_real(std::string& properties, std::uint32_t key, double value, bool 
 std::string encode_vector_tile(std::span<const VectorLayer> layers) {
   std::string tile;
   for (const VectorLayer& layer : layers) {
-    if (layer.points.empty()) continue;
+    if (layer.points.empty() && layer.polygons.empty()) continue;
     LayerWriter writer;
     for (const TilePoint& point : layer.points) writer.add(point);
+    for (const TilePolygon& polygon : layer.polygons) writer.add(polygon);
     std::string message;
     append_number(message, 15, 2);  // version
     append_bytes(message, 1, layer.name);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -21,16 +22,26 @@ struct TilePoint {
   std::vector<std::string_view> properties = {};  ///< lists of append_property
 };
 
+/// Polygon of a layer.
+struct TilePolygon {
+  using Ring = std::vector<std::array<std::int32_t, 2>>;  ///< steps, y down; not closed
+  std::uint64_t id = 0;                                   ///< below 2^53
+  /// Outer rings turn from x to y, as the specification asks; holes follow their outer ring and turn back.
+  std::vector<Ring> rings = {};
+  std::vector<std::string_view> properties = {};  ///< lists of append_property
+};
+
 /// Layer of a tile.
 struct VectorLayer {
   static constexpr std::uint32_t kExtent = 4096;  ///< steps per side of a tile
   std::string_view name;
   std::span<const std::string> keys;
   std::vector<TilePoint> points = {};
+  std::vector<TilePolygon> polygons = {};
 };
 
-/// Encodes layers as a Mapbox Vector Tile 2.1, not compressed. Keys and values that no point of the tile has
-/// are left out; layers without points, too.
+/// Encodes layers as a Mapbox Vector Tile 2.1, not compressed. Keys and values that no feature of the tile
+/// has are left out; layers without features, too.
 std::string encode_vector_tile(std::span<const VectorLayer> layers);
 
 }  // namespace waymark::exporters

@@ -38,8 +38,16 @@ StyleJson body_pixels(double min) {
   return stops;
 }
 
-StyleJson circles(const WebLayer& layer) {
+/// Returns whether the body of a type is drawn as an area, too: the crowns of trees.
+bool has_areas(const LandmarkType& type, const WebStyle& about) {
+  return std::ranges::any_of(about.shapes, [&](const WebShapeLayer& shapes) {
+    return type.body.feature.starts_with(shapes.name + "_");
+  });
+}
+
+StyleJson circles(const WebLayer& layer, const WebStyle& about) {
   const bool outlined = is_outlined(layer.type);
+  const double opacity = outlined ? 0.0 : has_areas(layer.type, about) ? 0.35 : 0.8;
   return {{"id", layer.type.name},
           {"type", "circle"},
           {"source", "landmarks"},
@@ -49,7 +57,7 @@ StyleJson circles(const WebLayer& layer) {
            {{"circle-radius", body_pixels(outlined ? 3 : 4)},
             {"circle-pitch-alignment", "map"},
             {"circle-color", layer.type.colour},
-            {"circle-opacity", outlined ? 0.0 : 0.8},
+            {"circle-opacity", opacity},
             {"circle-stroke-color", outlined ? layer.type.colour : "#ffffff"},
             {"circle-stroke-width", outlined ? 1.8 : 1.0}}}};
 }
@@ -150,6 +158,51 @@ StyleJson beyond_terrain(const WebStyle& about) {
             {"geometry", {{"type", "Polygon"}, {"coordinates", {world, hole}}}}}}};
 }
 
+/// Returns the layers of one layer of polygons: its areas, and its outlines.
+StyleJson polygons(const WebShapeLayer& layer) {
+  const auto of_kind = [&](const char* suffix, const char* kind, StyleJson paint) {
+    return StyleJson{{"id", layer.name + suffix},
+                     {"type", kind},
+                     {"source", "shapes"},
+                     {"source-layer", layer.name},
+                     {"paint", paint}};
+  };
+  return {of_kind("_area", "fill", {{"fill-color", layer.fill}, {"fill-opacity", 0.3}}),
+          of_kind("_outline", "line",
+                  {{"line-color", layer.colour}, {"line-width", layer.name == "stand" ? 2 : 1}})};
+}
+
+/// Returns the title of a column without its unit, which stands behind the value: "Mean height" of
+/// mean_height_m.
+std::string column_title(const AttributeSpec& column) {
+  std::string unit = column.unit == "1/ha" ? "_per_ha" : "_" + column.unit, name = column.name;
+  if (const std::size_t slash = unit.find('/'); slash != std::string::npos) unit.replace(slash, 1, "_per_");
+  const std::size_t at = column.unit.empty() ? std::string::npos : name.rfind(unit);
+  if (at != std::string::npos && (at + unit.size() == name.size() || name[at + unit.size()] == '_'))
+    name.erase(at, unit.size());
+  return title_of(name);
+}
+
+StyleJson shapes_json(const WebStyle& about) {
+  StyleJson list = StyleJson::array();
+  for (const WebShapeLayer& layer : about.shapes) {
+    StyleJson columns = StyleJson::array();
+    for (const AttributeSpec& column : layer.columns)
+      columns.push_back({{"name", column.name},
+                         {"title", column_title(column)},
+                         {"unit", column.unit},
+                         {"summary", column.summary}});
+    list.push_back({{"name", layer.name},
+                    {"title", layer.title},
+                    {"summary", layer.summary},
+                    {"colour", layer.colour},
+                    {"fill", layer.fill},
+                    {"count", layer.count},
+                    {"columns", columns}});
+  }
+  return list;
+}
+
 StyleJson layer_json(const WebLayer& layer) {
   StyleJson features = StyleJson::array();
   for (const WebLayer::Feature& feature : layer.features)
@@ -193,7 +246,8 @@ StyleJson map_json(const WebLandmarks& landmarks, const WebStyle& about) {
           {"height_factor", height_factor(about)},
           {"lowest", about.terrain_lowest},
           {"outside", landmarks.outside},
-          {"types", types}};
+          {"types", types},
+          {"shapes", shapes_json(about)}};
 }
 
 }  // namespace
@@ -219,7 +273,11 @@ std::string web_style(const WebLandmarks& landmarks, const WebStyle& about) {
                       {"source", "beyond_terrain"},
                       {"paint", {{"fill-color", kBackground}}}});
   }
-  for (const WebLayer& layer : landmarks.layers) layers.push_back(circles(layer));
+  if (!about.shapes.empty())
+    style["sources"]["shapes"] = {{"type", "vector"}, {"url", fmt::format("pmtiles://{}", kShapeTiles)}};
+  for (const WebShapeLayer& shapes : about.shapes)
+    for (StyleJson& layer : polygons(shapes)) layers.push_back(std::move(layer));
+  for (const WebLayer& layer : landmarks.layers) layers.push_back(circles(layer, about));
   for (const WebLayer& layer : landmarks.layers)
     if (has_labels(layer)) layers.push_back(labels(layer));
   style["layers"] = layers;

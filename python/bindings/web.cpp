@@ -32,7 +32,8 @@ py::dict web(const py::dict& keywords, py::object progress, py::object message) 
   }();
   return py::dict(py::arg("landmarks") = made.landmarks, py::arg("outside") = made.outside,
                   py::arg("max_zoom") = made.max_zoom, py::arg("landmark_tiles") = made.landmark_tiles,
-                  py::arg("terrain_tiles") = made.terrain_tiles);
+                  py::arg("terrain_tiles") = made.terrain_tiles, py::arg("areas") = made.shapes,
+                  py::arg("area_tiles") = made.shape_tiles, py::arg("has_library") = made.has_library);
 }
 
 }  // namespace

@@ -1037,8 +1037,8 @@ def simulate(scenario: Any, folder: Any, *, progress: Any = ..., seed: int | Non
     ...
 
 def web(map: Any, output: Any, *, progress: Any = ..., types: Sequence[Any] | _Path = ..., min_confidence: float = ..., dem: Sequence[Any] | _Path = ..., terrain_pixels: int = ..., max_zoom: int = ..., assets: _Path = ..., title: _Path = ..., threads: int = ...) -> dict[str, int]:
-    """Writes a folder that shows a map in web browsers, as `waymark web`; returns counts: landmarks, outside,
-    max_zoom, landmark_tiles, terrain_tiles.
+    """Writes a folder that shows a map in web browsers, as `waymark web`; returns the numbers of its `--format json`:
+    landmarks, outside, max_zoom, landmark_tiles, terrain_tiles, areas, area_tiles, has_library.
 
     Keywords:
         types: landmark types shown; empty: all

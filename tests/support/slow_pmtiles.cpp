@@ -42,6 +42,28 @@ std::int64_t unzigzag(std::uint64_t n) {
   return n % 2 == 0 ? static_cast<std::int64_t>(n / 2) : -static_cast<std::int64_t>(n / 2) - 1;
 }
 
+/// Decodes the rings of a polygon, section 4.3.4.4 of the specification of vector tiles.
+std::vector<std::vector<std::pair<std::int64_t, std::int64_t>>> rings_of(
+    const std::vector<std::uint64_t>& geometry) {
+  std::vector<std::vector<std::pair<std::int64_t, std::int64_t>>> rings;
+  std::int64_t x = 0, y = 0;
+  for (std::size_t at = 0; at < geometry.size();) {
+    EXPECT_EQ(geometry.at(at++), 9u);  // move to, once
+    rings.emplace_back();
+    const auto add = [&] {
+      x += unzigzag(geometry.at(at++)), y += unzigzag(geometry.at(at++));
+      rings.back().emplace_back(x, y);
+    };
+    add();
+    const std::uint64_t line = geometry.at(at++);
+    EXPECT_EQ(line % 8, 2u);  // line to
+    EXPECT_GE(line / 8, 2u);
+    for (std::uint64_t n = line / 8; n > 0; --n) add();
+    EXPECT_EQ(geometry.at(at++), 15u);  // close
+  }
+  return rings;
+}
+
 struct Entry {
   std::uint64_t id, run, length, offset;
 };
@@ -209,11 +231,15 @@ std::map<std::string, std::vector<TileFeature>> read_vector_tile(const std::stri
             (tag == (2 << 3 | 2) ? tags : geometry).push_back(packed.varint());
         }
       }
-      EXPECT_EQ(type, 1u);
-      EXPECT_EQ(geometry.size(), 3u);
-      EXPECT_EQ(geometry.at(0), 9u);  // move to, once
-      feature.x = unzigzag(geometry.at(1));
-      feature.y = unzigzag(geometry.at(2));
+      if (type == 3) {
+        feature.rings = rings_of(geometry);
+      } else {
+        EXPECT_EQ(type, 1u);
+        EXPECT_EQ(geometry.size(), 3u);
+        EXPECT_EQ(geometry.at(0), 9u);  // move to, once
+        feature.x = unzigzag(geometry.at(1));
+        feature.y = unzigzag(geometry.at(2));
+      }
       for (std::size_t i = 0; i + 1 < tags.size(); i += 2)
         EXPECT_TRUE(feature.properties.emplace(keys.at(tags[i]), values.at(tags[i + 1])).second);
       layers[name].push_back(feature);

@@ -30,10 +30,11 @@ std::vector<std::pair<std::uint32_t, std::uint32_t>> draw_hilbert(int order);
 
 struct TileFeature {
   std::uint64_t id = 0;
-  std::int64_t x = 0, y = 0;
+  std::int64_t x = 0, y = 0;                                              ///< of a point
+  std::vector<std::vector<std::pair<std::int64_t, std::int64_t>>> rings;  ///< of a polygon
   std::map<std::string, std::variant<double, std::string>> properties;
 };
-/// Features of a vector tile, not compressed, by layer; all are points.
+/// Features of a vector tile, not compressed, by layer: points and polygons.
 std::map<std::string, std::vector<TileFeature>> read_vector_tile(const std::string& message);
 
 }  // namespace waymark::test

@@ -37,8 +37,9 @@ using exporters::WebPlane;
 using exporters::WebProjection;
 
 /// Names that a web map has in its folder.
-const std::set<std::string> kOwnNames{"index.html",     "site.js",           "site.css",        "style.json",
-                                      "fetch-maplibre", "landmarks.pmtiles", "terrain.pmtiles", "lib"};
+const std::set<std::string> kOwnNames{"index.html",      "site.js",        "site.css",
+                                      "style.json",      "fetch-maplibre", "landmarks.pmtiles",
+                                      "terrain.pmtiles", "shapes.pmtiles", "lib"};
 
 void check_folder(const fs::path& folder) {
   if (!fs::exists(folder)) return;
@@ -122,6 +123,21 @@ std::int64_t write_landmarks(TileMaker& make, PmtilesFile& file, const exporters
   }
   exporters::PmtilesHeader header = header_of(style.bounds, max_zoom);
   header.metadata = exporters::landmark_metadata(all, style, max_zoom);
+  file.finish(header);
+  return static_cast<std::int64_t>(file.tile_count());
+}
+
+std::int64_t write_shapes(TileMaker& make, PmtilesFile& file, const exporters::WebShapes& all,
+                          const std::string& title, int top) {
+  for (int zoom = 0; zoom <= top; ++zoom) {
+    const auto tiles = exporters::shape_tiles(all, zoom, top);
+    make(
+        file, fmt::format("areas, zoom {}", zoom), tiles.size(),
+        [&](std::size_t i) { return exporters::pmtiles_id(tiles[i].id); },
+        [&](std::size_t i) { return exporters::shape_tile(all, tiles[i], top); });
+  }
+  exporters::PmtilesHeader header = header_of(exporters::bounds_of(all), top);
+  header.metadata = exporters::shape_metadata(all, title, top);
   file.finish(header);
   return static_cast<std::int64_t>(file.tile_count());
 }
@@ -224,6 +240,13 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
     style.tint = exporters::hypsometric_tint(*relief, crs.body());
   }
 
+  const exporters::WebShapes shapes = exporters::read_web_shapes(request.map, projection);
+  style.shapes = shapes.layers;
+  result.shapes = static_cast<std::int64_t>(shapes.shapes.size());
+  if (shapes.outside > 0)
+    callbacks.warning(fmt::format(
+        "{} stands and crowns lie beyond the edges of web maps and are not on the map", shapes.outside));
+
   const fs::path output = request.output;
   fs::create_directories(output);
   AtomicFileSet files(output, output);
@@ -235,6 +258,11 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
     PmtilesFile tiles(files.path() / exporters::kTerrainTiles, output / exporters::kTerrainTiles);
     result.terrain_tiles = write_terrain(make, tiles, *terrain, crs, plane);
   }
+  if (!shapes.shapes.empty()) {
+    PmtilesFile tiles(files.path() / exporters::kShapeTiles, output / exporters::kShapeTiles);
+    result.shape_tiles =
+        write_shapes(make, tiles, shapes, style.title, exporters::top_zoom(shapes, world_width));
+  }
   write_texts(files.path(), exporters::web_page_files(style.title), output);
   write_texts(files.path(), {{"style.json", exporters::web_style(all, style)}}, output);
   if (!library.empty()) {
@@ -243,10 +271,13 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   }
   files.commit();
   if (!relief) fs::remove(output / exporters::kTerrainTiles);  // of an older map
+  if (shapes.shapes.empty()) fs::remove(output / exporters::kShapeTiles);
 
   callbacks.summary(fmt::format("{}: {} landmarks in {} tiles to zoom {}, {}\n", output.string(),
                                 result.landmarks, result.landmark_tiles, result.max_zoom,
                                 size_text(output / exporters::kLandmarkTiles)));
+  for (const exporters::WebShapeLayer& layer : shapes.layers)
+    callbacks.summary(fmt::format("{} areas of layer {}\n", layer.count, layer.name));
   if (relief)
     callbacks.summary(fmt::format("{}, {} tiles, {}\n", style.terrain_caption, result.terrain_tiles,
                                   size_text(output / exporters::kTerrainTiles)));

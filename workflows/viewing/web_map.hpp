@@ -24,13 +24,15 @@ struct WebMapResult {
   std::int64_t landmarks = 0, outside = 0;  ///< shown; beyond the edges of web maps
   int max_zoom = 0;
   std::int64_t landmark_tiles = 0, terrain_tiles = 0;
-  bool has_library = false;  ///< the folder holds the map library
+  std::int64_t shapes = 0, shape_tiles = 0;  ///< polygons of stands and crowns
+  bool has_library = false;                  ///< the folder holds the map library
 };
 
-/// Writes the folder. Its bytes do not depend on threads. Memory: about 300 bytes per landmark and 6 per
-/// pixel of the terrain. Throws Error{input} for a map without landmarks and a DEM that cannot be read,
-/// Error{usage} for an unknown type and a library of another version, Error{output} for a folder with other
-/// files, or if the disk is full: an older web map is unchanged then.
+/// Writes the folder. Its bytes do not depend on threads. Memory: about 300 bytes per landmark, 16
+/// per vertex of a stand or crown, and 6 per pixel of the terrain. Throws Error{input} for a map without
+/// landmarks and a DEM that cannot be read, Error{usage} for an unknown type and a library of another
+/// version, Error{output} for a folder with other files, or if the disk is full: an older web map is
+/// unchanged then.
 WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

@@ -105,6 +105,21 @@ const details = (about, type, p) => {
   return box;
 };
 
+/// Content of the popup of a polygon. A column `X_se` is the standard error of `X`.
+const shapeDetails = (layer, p) => {
+  const rows = [];
+  for (const column of layer.columns) {
+    const value = p[column.name], error = p[column.name + '_se'];
+    if (value === undefined || value === '' || (column.name.endsWith('_se') && layer.columns.some(one => one.name + '_se' === column.name)))
+      continue;
+    const decimals = typeof value !== 'number' || Number.isInteger(value) ? 0 : Math.abs(value) < 10 ? 2 : Math.abs(value) < 1000 ? 1 : 0;
+    const text = typeof value !== 'number' ? value : [value, error].filter(one => one !== undefined)
+      .map(one => numberText(one, decimals)).join(' \u00b1 ') + (column.unit && '\u00a0' + column.unit);
+    rows.push(element('tr', {title: column.summary}, element('th', {}, column.title), element('td', {}, text)));
+  }
+  return element('div', {}, element('h2', {}, layer.title), element('table', {}, ...rows));
+};
+
 const filterOf = (confidence, quality) => ['all', ['>=', ['coalesce', ['get', 'confidence'], 1], confidence],
   ['any', ['<=', quality, 0], ['>=', ['coalesce', ['get', 'quality'], -1], quality]]];
 
@@ -138,6 +153,16 @@ function addPanel(map, about) {
     box.onchange = () => layersOf(type).forEach(id => map.setLayoutProperty(id, 'visibility', box.checked ? 'visible' : 'none'));
     panel.append(element('label', {title: type.summary}, box, symbol, type.title,
       element('span', {className: 'count'}, numberText(type.count, 0))));
+  }
+  for (const layer of about.shapes) {
+    const box = element('input', {type: 'checkbox', checked: true, id: `shapes_${layer.name}`});
+    const symbol = element('i', {className: 'area'});
+    symbol.style.borderColor = layer.colour;
+    symbol.style.background = layer.fill;
+    box.onchange = () => ['_area', '_outline'].forEach(part =>
+      map.setLayoutProperty(layer.name + part, 'visibility', box.checked ? 'visible' : 'none'));
+    panel.append(element('label', {title: layer.summary}, box, symbol, `${layer.title} (areas)`,
+      element('span', {className: 'count'}, numberText(layer.count, 0))));
   }
   const limits = {confidence: 0, quality: 0};
   for (const name of Object.keys(limits)) {
@@ -193,17 +218,25 @@ function addPopups(map, about) {
     };
     return found.sort((a, b) => away(a) - away(b))[0];
   };
+  const areas = about.shapes.map(layer => layer.name + '_area');
+  const areaAt = point => areas.length ? map.queryRenderedFeatures(point, {layers: areas})[0] : undefined;
+  const popupAt = (position, content) => new maplibregl.Popup({maxWidth: '320px'}).setLngLat(position)
+    .setDOMContent(content).addTo(map);
   map.on('click', event => {
     const found = nearest(event.point);
-    if (!found) return;
+    if (!found) {
+      const area = areaAt(event.point);
+      const layer = area && about.shapes.find(one => one.name === area.sourceLayer);
+      if (layer) popupAt(event.lngLat, shapeDetails(layer, area.properties));
+      return;
+    }
     const type = about.types.find(one => one.name === found.sourceLayer);
-    new maplibregl.Popup({maxWidth: '320px'}).setLngLat(found.geometry.coordinates)
-      .setDOMContent(details(about, type, found.properties)).addTo(map);
+    popupAt(found.geometry.coordinates, details(about, type, found.properties));
   });
   const output = document.getElementById('position');
   map.on('mousemove', event => {
     output.textContent = positionText(about, event.lngLat);
-    map.getCanvas().style.cursor = nearest(event.point) ? 'pointer' : '';
+    map.getCanvas().style.cursor = nearest(event.point) || areaAt(event.point) ? 'pointer' : '';
   });
 }
 
@@ -217,7 +250,7 @@ async function start() {
   const style = await (await fetch('style.json')).json();
   const about = style.metadata.waymark;
   const protocol = new pmtiles.Protocol();
-  for (const file of ['landmarks.pmtiles', 'terrain.pmtiles']) protocol.add(new pmtiles.PMTiles(new ArchiveSource(file)));
+  for (const file of ['landmarks.pmtiles', 'terrain.pmtiles', 'shapes.pmtiles']) protocol.add(new pmtiles.PMTiles(new ArchiveSource(file)));
   maplibregl.addProtocol('pmtiles', async (request, abort) => {
     const answer = await protocol.tile(request, abort);
     // A tile of heights without data would count as loading for ever.

@@ -164,6 +164,53 @@ TEST_F(WebCommand, APopupLiesOverThePanelAndHiddenLandmarksAreCounted) {
   EXPECT_EQ(values[6], "");
 }
 
+TEST_F(WebCommand, StandsAreAreasWithALegendAndPopups) {
+  if (library().empty()) GTEST_SKIP() << "WAYMARK_MAPLIBRE names no folder of scripts/fetch-maplibre";
+  std::string table = "uid,x,y,height,diameter\n";
+  for (int i = 0; i < 36; ++i)
+    table +=
+        fmt::format("tree-{},{},{},{},0.3\n", i, 500005 + 10 * (i % 6), 5200005 + 10 * (i / 6), 15 + i % 7);
+  write_text(folder_ / "trees.csv", table);
+  write_text(folder_ / "stands.geojson", R"({"type": "FeatureCollection",
+    "crs": {"type": "name", "properties": {"name": "EPSG:32632"}}, "features": [
+    {"type": "Feature", "properties": {"stand": "east"}, "geometry": {"type": "Polygon", "coordinates":
+    [[[500030, 5200000], [500060, 5200000], [500060, 5200060], [500030, 5200060], [500030, 5200000]]]}},
+    {"type": "Feature", "properties": {"stand": "west"}, "geometry": {"type": "Polygon", "coordinates":
+    [[[500000, 5200000], [500030, 5200000], [500030, 5200060], [500000, 5200060], [500000, 5200000]]]}}]})");
+  const std::string trees = folder_ / "trees.gpkg";
+  ASSERT_EQ(
+      waymark({"import", folder_ / "trees.csv", "--type", "tree", "--map-crs", "EPSG:32632", "-o", trees})
+          .code,
+      0);
+  const Outcome counted = waymark({"inventory", trees, "--stands", folder_ / "stands.geojson", "-o", trees});
+  ASSERT_EQ(counted.code, 0) << counted.err;
+  const Outcome made = waymark({"web", trees, "-o", site_, "--assets", library()});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("2 areas of layer stand"));
+  const auto values = browse(
+      {"eval:[...new Set(waymark.map.queryRenderedFeatures({layers: [\"stand_area\"]}).map(f => "
+       "f.properties.stand))].sort()",
+       "eval:document.getElementById(\"shapes_stand\").parentElement.innerText",
+       // Between four trees of the western stand.
+       "clickon:(() => { const f = waymark.map.queryRenderedFeatures({layers: [\"tree\"]}), at = uid => "
+       "f.find(one => one.properties.uid === uid).geometry.coordinates, a = at(\"tree-13\"), b = "
+       "at(\"tree-20\"); "
+       "return waymark.map.project([(a[0] + b[0]) / 2, (a[1] + b[1]) / 2]); })()",
+       "eval:document.querySelector(\".maplibregl-popup\").innerText",
+       "eval:(document.getElementById(\"shapes_stand\").click(), 1)",
+       "eval:waymark.map.queryRenderedFeatures({layers: [\"stand_area\", \"stand_outline\"]}).length",
+       "errors"});
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_EQ(values[0], Json({"east", "west"}));
+  EXPECT_THAT(values[1].get<std::string>(), HasSubstr("Stand"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("west"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr("Stems\t"));
+  EXPECT_THAT(values[3].get<std::string>(), HasSubstr(" \u00b1 "));
+  EXPECT_THAT(values[3].get<std::string>(), testing::Not(HasSubstr("D005")));
+  EXPECT_EQ(values[5], 0);
+  EXPECT_THAT(values[6], IsEmpty());
+}
+
 TEST_F(WebCommand, AServerWithoutRangesServesTheMapToo) {
   if (library().empty()) GTEST_SKIP() << "WAYMARK_MAPLIBRE names no folder of scripts/fetch-maplibre";
   ASSERT_EQ(waymark({"web", map_, "-o", site_, "--assets", library()}).code, 0);
