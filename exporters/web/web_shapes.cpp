@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "exporters/formatting.hpp"
 #include "exporters/web/gzip.hpp"
@@ -30,7 +32,8 @@ constexpr std::array<Look, 2> kLooks{{{"stand", "#5d4037", "#a5d6a7"}, {"crown",
 /// Columns of stands by classes of diameter, "stems_per_ha_d005", are too many for a popup.
 bool is_class(const std::string& column) {
   const std::size_t at = column.rfind("_d");
-  return at != std::string::npos && at + 2 < column.size() && std::isdigit(column[at + 2]) != 0;
+  return at != std::string::npos && at + 2 < column.size() &&
+         std::isdigit(static_cast<unsigned char>(column[at + 2])) != 0;
 }
 
 /// Returns a ring on the world, in one piece across its edge; empty if a vertex is beyond the world.

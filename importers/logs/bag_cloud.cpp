@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 
 #include "importers/logs/bag_messages.hpp"
+#include "importers/logs/binary_number.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -14,45 +14,20 @@ namespace {
 constexpr float kFarthestPoint = 1e4F;  // m; of any scanner
 
 // sensor_msgs/msg/PointField: types 1 to 8.
-struct FieldType {
-  std::size_t size = 0;
-  bool is_real = false, is_signed = false;
-};
-constexpr std::array<FieldType, 9> kTypes{{{},
-                                           {1, false, true},
-                                           {1, false, false},
-                                           {2, false, true},
-                                           {2, false, false},
-                                           {4, false, true},
-                                           {4, false, false},
-                                           {4, true, true},
-                                           {8, true, true}}};
+constexpr std::array<NumberType, 9> kTypes{{{},
+                                            {1, false, true},
+                                            {1, false, false},
+                                            {2, false, true},
+                                            {2, false, false},
+                                            {4, false, true},
+                                            {4, false, false},
+                                            {4, true, true},
+                                            {8, true, true}}};
 
 struct Field {
   std::size_t offset = 0;
-  FieldType type;
+  NumberType type;
 };
-
-// Reads the number at `from`, whose bytes may be in the other order.
-double value_at(const char* from, const FieldType& type, bool swapped) {
-  unsigned char raw[8] = {};
-  for (std::size_t i = 0; i < type.size; ++i)
-    raw[i] = static_cast<unsigned char>(from[swapped ? type.size - 1 - i : i]);
-  if (type.is_real && type.size == 4) {
-    float value;
-    std::memcpy(&value, raw, sizeof value);
-    return static_cast<double>(value);
-  }
-  if (type.is_real) {
-    double value;
-    std::memcpy(&value, raw, sizeof value);
-    return value;
-  }
-  std::int64_t value = 0;
-  for (std::size_t i = 0; i < type.size; ++i) value |= std::int64_t{raw[i]} << (8 * i);
-  if (type.is_signed && (raw[type.size - 1] & 0x80) != 0) value -= std::int64_t{1} << (8 * type.size);
-  return static_cast<double>(value);
-}
 
 std::array<Field, 3> read_axes(CdrReader& in) {
   constexpr std::size_t kMinField = 4 + 1 + 4 + 1 + 4;  // empty name, offset, type, count
@@ -104,7 +79,7 @@ BagCloud read_cloud(const BagMessage& message) {
       Eigen::Vector3f p;
       for (std::size_t k = 0; k < axes.size(); ++k)
         p(static_cast<Eigen::Index>(k)) =
-            static_cast<float>(value_at(point + axes[k].offset, axes[k].type, swapped));
+            static_cast<float>(read_binary_number(point + axes[k].offset, axes[k].type, swapped));
       if (!p.allFinite()) continue;
       if (!(p.cwiseAbs().maxCoeff() < kFarthestPoint))
         throw std::runtime_error("a point is farther than 10 km: no metres of a scanner");

@@ -13,7 +13,7 @@ namespace waymark::importers {
 // Messages of ROS 2 that are read. Functions throw std::runtime_error for a message that ends too early or
 // states values that cannot be.
 
-/// Head of a message: when, and of which frame.
+/// Time and frame of a message.
 struct BagStamp {
   double t = 0;  ///< s; of the recorder where the message has none
   std::string frame;

@@ -73,9 +73,8 @@ localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 /// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Throws Error{input}.
 /// - Odometry becomes steps; scans get their pose on the robot from tf and tf_static.
 /// - Satellite fixes are in degrees (`fix_crs`). An IMU gives the yaw where odometry has none, and headings.
-/// - Point clouds become sightings by the detectors whose types the map holds (`held` as in LogImport); the
-/// files are
-///   read twice for them, so that one cloud is in memory at a time.
+/// - Point clouds become sightings by the detectors whose types the map holds (`held` as in LogImport). The
+///   files are read twice for them, so that one cloud is in memory at a time.
 /// - Of several topics of a type, the one in `topics` is read, else the one with the most messages.
 /// - Messages that cannot be read, and those of other types, are skipped and counted.
 localization::RobotLog import_bag_log(const std::filesystem::path& path, const TypeRegistry& types = {},

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "importers/json_value.hpp"
+#include "importers/logs/binary_number.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -50,8 +51,7 @@ std::vector<Eigen::Vector3f> read_kitti(const std::string& bytes, const std::fil
 }
 
 struct PlyProperty {
-  std::size_t size = 4;
-  bool real = true, sign = true;
+  NumberType type;
   int axis = -1;  // 0 x, 1 y, 2 z
 };
 
@@ -66,15 +66,15 @@ PlyProperty ply_property(const std::string& type, const std::string& name,
   PlyProperty property;
   const auto is = [&](const char* old, const char* current) { return type == old || type == current; };
   if (is("float", "float32"))
-    property = {4, true, true};
+    property.type = {4, true, true};
   else if (is("double", "float64"))
-    property = {8, true, true};
+    property.type = {8, true, true};
   else if (is("char", "int8") || is("uchar", "uint8"))
-    property = {1, false, type[0] != 'u'};
+    property.type = {1, false, type[0] != 'u'};
   else if (is("short", "int16") || is("ushort", "uint16"))
-    property = {2, false, type[0] != 'u'};
+    property.type = {2, false, type[0] != 'u'};
   else if (is("int", "int32") || is("uint", "uint32"))
-    property = {4, false, type[0] != 'u'};
+    property.type = {4, false, type[0] != 'u'};
   else
     refuse_points(file, fmt::format("vertices have a property '{}' of the type '{}'", name, type),
                   "lists and unknown types of vertices are not read; write plain numbers");
@@ -124,26 +124,6 @@ PlyHeader read_ply_header(const std::string& bytes, const std::filesystem::path&
   return header;
 }
 
-double ply_number(const char* from, const PlyProperty& property, bool swap) {
-  unsigned char raw[8] = {};
-  for (std::size_t i = 0; i < property.size; ++i)
-    raw[i] = static_cast<unsigned char>(from[swap ? property.size - 1 - i : i]);
-  if (property.real && property.size == 4) {
-    float value;
-    std::memcpy(&value, raw, sizeof value);
-    return static_cast<double>(value);
-  }
-  if (property.real) {
-    double value;
-    std::memcpy(&value, raw, sizeof value);
-    return value;
-  }
-  std::int64_t value = 0;
-  for (std::size_t i = 0; i < property.size; ++i) value |= std::int64_t{raw[i]} << (8 * i);
-  if (property.sign && (raw[property.size - 1] & 0x80) != 0) value -= std::int64_t{1} << (8 * property.size);
-  return static_cast<double>(value);
-}
-
 std::vector<Eigen::Vector3f> read_ply(const std::string& bytes, const std::filesystem::path& file) {
   const PlyHeader header = read_ply_header(bytes, file);
   if (header.vertices > kMaxPoints)
@@ -151,7 +131,7 @@ std::vector<Eigen::Vector3f> read_ply(const std::string& bytes, const std::files
                   "a scan is one turn of the scanner");
   std::vector<Eigen::Vector3f> points;
   std::size_t record = 0;
-  for (const PlyProperty& property : header.properties) record += property.size;
+  for (const PlyProperty& property : header.properties) record += property.type.size;
   const auto cut = [&](std::size_t i) {
     refuse_points(file, fmt::format("the file ends after {} of {} vertices", i, header.vertices),
                   "copy it again");
@@ -176,8 +156,9 @@ std::vector<Eigen::Vector3f> read_ply(const std::string& bytes, const std::files
     const char* from = bytes.data() + header.body + i * record;
     Eigen::Vector3f p = Eigen::Vector3f::Zero();
     for (const PlyProperty& property : header.properties) {
-      if (property.axis >= 0) p(property.axis) = static_cast<float>(ply_number(from, property, swap));
-      from += property.size;
+      if (property.axis >= 0)
+        p(property.axis) = static_cast<float>(read_binary_number(from, property.type, swap));
+      from += property.type.size;
     }
     keep(p, file, points);
   }

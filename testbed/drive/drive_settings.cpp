@@ -128,7 +128,8 @@ void describe_dynamics(DriveSettings& d, OptionVisitor& field) {
   field("on", m.on,
         {.help = "Move a rigid body on wheels, with its suspension, over terrain and rocks: slip, sinking, "
                  "tipping over"});
-  field("vehicle", m.vehicle, {.help = "Vehicle with a mass: a name of `waymark vehicles`, or a file"});
+  field("vehicle", m.vehicle,
+        {.help = "Vehicle with a mass: a name of `waymark vehicles`, or a file; empty: that of the drive"});
   field("gravity", m.gravity, {.help = "Metres per second squared", .min = 0.01, .max = 30});
   m.soil.describe(field);
 }

@@ -68,8 +68,8 @@ struct NavigationModel {
 /// Rigid body on wheels (testbed/dynamics) instead of a vehicle that stands on the plane under its wheels.
 struct DynamicsModel {
   bool on = false;
-  std::string vehicle = "rover";  ///< of `waymark vehicles`, or a file; its mass and supports
-  double gravity = 3.71;          ///< m/s^2
+  std::string vehicle;    ///< of `waymark vehicles`, or a file; empty: that of the drive
+  double gravity = 3.71;  ///< m/s^2
   Soil soil;
 };
 
@@ -104,6 +104,8 @@ struct DriveSettings {
   std::string stand;  ///< use only rows of the table with this stand_id
 
   bool harvester() const { return vehicle == "harvester"; }
+  /// Returns the name or file of the vehicle that moves with `dynamics`.
+  const std::string& moved_vehicle() const { return dynamics.vehicle.empty() ? vehicle : dynamics.vehicle; }
   /// Returns whether the route is a file.
   bool planned() const { return route.find('.') != std::string::npos; }
 };

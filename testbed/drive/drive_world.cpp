@@ -117,7 +117,7 @@ DriveSettings completed(DriveSettings s) {
   if (s.laser_height == 0) s.laser_height = s.harvester() ? 2.0 : 0.35;
   if (s.dynamics.on) {
     // The vehicle that moves is that of its file: its wheels must pass what its route passes.
-    const planning::Vehicle vehicle = planning::find_vehicle(s.dynamics.vehicle);
+    const planning::Vehicle vehicle = planning::find_vehicle(s.moved_vehicle());
     const auto [rear, front] =
         std::ranges::minmax(vehicle.supports, {}, [](const planning::Support& p) { return p.x; });
     s.wheels = {.base = front.x.value - rear.x.value,

@@ -16,7 +16,7 @@ DynamicVehicle::DynamicVehicle(const Terrain& terrain, std::span<const RockSolid
                                std::uint64_t seed)
     : settings_(settings),
       surface_(terrain, rocks),
-      vehicle_(planning::find_vehicle(settings.dynamics.vehicle), settings.dynamics.soil,
+      vehicle_(planning::find_vehicle(settings.moved_vehicle()), settings.dynamics.soil,
                settings.dynamics.gravity, surface_, start),
       random_(seed, "odometry") {
   const OdometryModel& model = settings.odometry;

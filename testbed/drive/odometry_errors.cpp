@@ -36,7 +36,7 @@ OdometryErrors odometry_errors(const DriveSettings& settings, std::span<const Dr
   errors.noise.along_per_metre += model.speed_sd * model.speed_sd * settings.speed / model.rate;
   errors.noise.yaw_per_metre += yaw_sd * yaw_sd;
   if (settings.dynamics.on) {
-    const planning::Vehicle vehicle = planning::find_vehicle(settings.dynamics.vehicle);
+    const planning::Vehicle vehicle = planning::find_vehicle(settings.moved_vehicle());
     const auto slip = [&](double climb, double cross) {
       return steady_slip(vehicle, settings.dynamics.soil, settings.dynamics.gravity, climb, cross);
     };

@@ -5,8 +5,8 @@
 #include "core/units.hpp"
 namespace waymark::testbed {
 
-/// Soil under a wheel. Defaults: lunar regolith (Carrier, Olhoeft & Mendell 1991, Lunar Sourcebook, table
-/// 9.14).
+/// Soil under a wheel. Defaults: lunar regolith (Carrier, Olhoeft & Mendell 1991, Lunar Sourcebook, chapter
+/// 9), without the cohesive part of its modulus of sinkage.
 struct Soil {
   Degrees friction{35};         ///< angle of internal friction
   double cohesion = 170;        ///< Pa

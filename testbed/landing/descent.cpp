@@ -34,7 +34,7 @@ class Descent {
     const double direction = random_.uniform(0, 2 * std::numbers::pi),
                  side = random_.uniform(0, 2 * std::numbers::pi);
     wind_ = model.wind * Eigen::Vector3d(std::cos(direction), std::sin(direction), 0);
-    yaw_ = random_.uniform(0, 2 * std::numbers::pi);
+    const double yaw = random_.uniform(0, 2 * std::numbers::pi);
     RigidBody& body = state_.body;
     body.mass = kMass + kAir;
     body.inertia = Eigen::Vector3d(kAir * kLine * kLine, kAir * kLine * kLine, 800);
@@ -42,7 +42,7 @@ class Descent {
     body.velocity = wind_ - model.parachute_speed * Eigen::Vector3d::UnitZ();
     const double swing = to_radians(model.swing).value;
     body.attitude = Eigen::AngleAxisd(swing, Eigen::Vector3d(std::cos(side), std::sin(side), 0)) *
-                    Eigen::AngleAxisd(yaw_, Eigen::Vector3d::UnitZ());
+                    Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
   }
 
   std::vector<DescentState> run() {
@@ -129,7 +129,7 @@ class Descent {
   Random random_;
   DescentState state_;
   Eigen::Vector3d wind_ = Eigen::Vector3d::Zero(), gust_ = Eigen::Vector3d::Zero();
-  double yaw_ = 0, remaining_ = 0;
+  double remaining_ = 0;  // s of the powered phase
 };
 
 }  // namespace

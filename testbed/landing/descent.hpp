@@ -33,7 +33,8 @@ struct DescentState {
 /// Deterministic for a seed.
 /// - Parachute: a rigid line of 25 m with 50 kg of air at its end; three quarters of the drag act along the
 ///   line, one quarter against the wind, which lets it swing.
-/// - Rockets: quadratic guidance (Klumpp 1974), the body turned to the thrust within a second.
+/// - Rockets: an acceleration linear in time that meets position and velocity (E guidance, Cherry 1964); the
+///   body is turned to the thrust within a second.
 /// Throws Error{usage} if an altitude is not above the next one.
 std::vector<DescentState> simulate_descent(const DescentModel& model, const Eigen::Vector3d& from,
                                            const Eigen::Vector3d& to, std::uint64_t seed);

@@ -107,6 +107,9 @@ void add_lines(std::vector<Shot>& shots, const Scenario& scenario, const Flight&
 }
 
 void add_landing(std::vector<Shot>& shots, const Scenario& scenario, const Flight& f, Random& errors) {
+  if (f.lines != 1)
+    throw Error(ErrorCode::usage, fmt::format("the landing {} has {} lines", f.name, f.lines), "flights",
+                "remove lines, or write \"path\": \"lines\"");
   const SiteModel& ground = scenario.ground;
   const std::vector<DescentState> states = simulate_descent(
       f.landing, {f.from_east, f.from_north, f.from_altitude}, {f.to_east, f.to_north, f.to_altitude},

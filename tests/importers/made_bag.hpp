@@ -11,6 +11,7 @@
 #include <fstream>
 #include <functional>
 #include <map>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -276,6 +277,17 @@ inline std::string made_mcap(
   return out + record(15, number(std::uint32_t{0})) +
          record(2, number(std::uint64_t{0}) + number(std::uint64_t{0}) + number(std::uint32_t{0})) +
          "\x89MCAP0\r\n";
+}
+
+/// Returns a damaged copy of a bag, which is also given as a rosbag2 `database`: an MCAP file for even seeds,
+/// a database for odd ones.
+inline std::string mutated_bag(const MadeBag& bag, const std::string& database, unsigned seed) {
+  std::mt19937 random(seed);
+  std::string bytes = seed % 2 == 0 ? made_mcap(bag, seed % 3 * 5) : database;
+  for (unsigned n = 0; n <= random() % 40; ++n)
+    bytes[random() % bytes.size()] = char(random() % 3 ? random() : 255);
+  if (random() % 4 == 0) bytes.resize(random() % bytes.size());
+  return bytes;
 }
 
 }  // namespace waymark::test

@@ -181,8 +181,8 @@ int rename(const char* from, const char* to) {
 }
 int mkdir(const char* path, mode_t mode) {
   static auto* const call = real<int(const char*, mode_t)>("mkdir");
-  const bool is_new =
-      ::access(path, F_OK) != 0;  // a kernel says that a folder exists before it asks for space
+  // A kernel says that a folder exists before it asks for space.
+  const bool is_new = ::access(path, F_OK) != 0;
   return is_new && is_below(path) && fails(Need::space) ? -1 : call(path, mode);
 }
 char* mkdtemp(char* pattern) {

@@ -8,12 +8,11 @@
 #include "core/error.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/motion_model.hpp"
-#include "localization/persistent_errors.hpp"
 #include "testbed/drive/drive_log.hpp"
 #include "testbed/drive/drive_route.hpp"
-#include "testbed/drive/odometry_errors.hpp"
 #include "testbed/drive/ray_fan.hpp"
 #include "testbed/scenario.hpp"
+#include "tests/testbed/dead_reckoning.hpp"
 
 namespace waymark::test {
 using namespace testbed;
@@ -153,17 +152,7 @@ TEST(Drive, OdometryErrsAsTheLogStates) {
     DriveSettings settings;
     settings.length = 60, settings.seed = 100 + k;
     const DriveWorld world = make_drive(settings, scene, {}, 5);
-    const OdometryErrors stated = odometry_errors(world.settings, world.steps);
-    localization::PersistentErrors drift(stated.drift);
-    localization::PoseEstimate at{world.steps.front().at.plane, 1e-9 * Eigen::Matrix3d::Identity()};
-    for (std::size_t i = 0; i + 1 < world.steps.size(); ++i) {
-      const DriveStep& step = world.steps[i];
-      const double dt = world.steps[i + 1].t - step.t;
-      at = predict_pose(
-          at, drift.correct(at, localization::twist_motion(step.speed, 0, step.turn, dt, stated.noise), dt));
-    }
-    const Eigen::Vector2d off = at.pose.at() - world.steps.back().at.plane.at();
-    squares += off.dot(at.covariance.topLeftCorner<2, 2>().inverse() * off) / (2 * kDrives);
+    squares += squared_error_of_odometry(world) / kDrives;
   }
   // 40 drives of two coordinates: 0.71 to 1.33 (95 %) if all errors were Gaussian and the slopes alike.
   EXPECT_GT(squares, 0.5);

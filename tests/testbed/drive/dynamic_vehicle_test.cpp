@@ -3,11 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "localization/motion_model.hpp"
-#include "localization/persistent_errors.hpp"
 #include "testbed/drive/drive.hpp"
 #include "testbed/drive/drive_world.hpp"
-#include "testbed/drive/odometry_errors.hpp"
+#include "tests/testbed/dead_reckoning.hpp"
 #include "tests/testbed/dynamics/made_ground.hpp"
 
 namespace waymark::test {
@@ -58,17 +56,7 @@ TEST(DynamicVehicle, OdometryErrsAsTheLogStates) {
     DriveSettings settings = with_dynamics();
     settings.length = 40, settings.seed = 200 + k;
     const DriveWorld world = make_drive(settings, scene, {}, 5);
-    const OdometryErrors stated = odometry_errors(world.settings, world.steps);
-    localization::PersistentErrors drift(stated.drift);
-    localization::PoseEstimate at{world.steps.front().at.plane, 1e-9 * Eigen::Matrix3d::Identity()};
-    for (std::size_t i = 0; i + 1 < world.steps.size(); ++i) {
-      const DriveStep& step = world.steps[i];
-      const double dt = world.steps[i + 1].t - step.t;
-      at = predict_pose(
-          at, drift.correct(at, localization::twist_motion(step.speed, 0, step.turn, dt, stated.noise), dt));
-    }
-    const Eigen::Vector2d off = at.pose.at() - world.steps.back().at.plane.at();
-    squares += off.dot(at.covariance.topLeftCorner<2, 2>().inverse() * off) / (2 * kDrives);
+    squares += squared_error_of_odometry(world) / kDrives;
   }
   EXPECT_GT(squares, 0.3);
   EXPECT_LT(squares, 2);
@@ -102,6 +90,15 @@ TEST(DynamicVehicle, TipsOverOnAWallAndSaysSo) {
   settings.dynamics.soil.cohesion = 1e5;
   DynamicVehicle vehicle(steep, {}, settings, {0, 0, 0}, 1);
   EXPECT_EQ(vehicle.mishap(), "tipped over");
+}
+
+TEST(DynamicVehicle, IsThatOfTheDriveUnlessAnotherIsNamed) {
+  const Terrain level = plane(0, 0);
+  DriveSettings settings = with_dynamics();
+  settings.vehicle = "harvester";
+  EXPECT_EQ(DynamicVehicle(level, {}, settings, {0, 0, 0}, 1).vehicle().body().mass, 20000);
+  settings.dynamics.vehicle = "field_robot";
+  EXPECT_EQ(DynamicVehicle(level, {}, settings, {0, 0, 0}, 1).vehicle().body().mass, 50);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
+#include "testbed/landing/flight.hpp"
 
 namespace waymark::test {
 using namespace testbed;
@@ -84,6 +85,20 @@ TEST(Descent, RefusesAltitudesOutOfOrder) {
   EXPECT_THAT(refusal({.powered_altitude = 10}, 100, 5), HasSubstr("altitudes fall"));
   EXPECT_THAT(refusal({}, 4000, 30), HasSubstr("altitudes fall"));
   EXPECT_EQ(refusal({}, 1500, 10), "accepted") << "already under rockets";
+}
+
+TEST(Descent, ALandingHasOneLine) {
+  Scenario scenario;
+  Flight& flight = scenario.flights[0];
+  flight.path = "landing";
+  flight.images = 3, flight.lines = 2;
+  flight.from_altitude = 800, flight.to_altitude = 10;
+  EXPECT_THROW(plan_shots(scenario), Error);
+  flight.lines = 1;
+  const std::vector<Shot> shots = plan_shots(scenario);
+  ASSERT_EQ(shots.size(), 3u);
+  EXPECT_GT(shots[0].motion.velocity.norm(), 1);
+  EXPECT_NEAR(shots[2].view.grid_from_camera.transform.translation().z() - scenario.ground.up, 10, 0.1);
 }
 
 }  // namespace
