@@ -12,10 +12,11 @@
 
 #include "core/error.hpp"
 #include "importers/logs/bag_file.hpp"
+#include "importers/logs/bag_imu.hpp"
 #include "importers/logs/bag_messages.hpp"
-#include "importers/logs/frame_tree.hpp"
-#include "importers/logs/gyro_yaw.hpp"
+#include "importers/logs/bag_topics.hpp"
 #include "importers/logs/import_log.hpp"
+#include "importers/logs/level_pose.hpp"
 #include "importers/logs/odometry_steps.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
@@ -23,41 +24,7 @@
 namespace waymark::importers {
 namespace {
 
-constexpr double kMaxTilt = 0.2;       // rad: a level scan 10 m away is then 2 m higher or lower
-constexpr double kGyroBias = 0.005;    // rad/s, of small gyros; it is estimated with the pose
-constexpr double kGyroScaleSd = 0.01;  // relative error of their rate
-
-struct OdometryTopic {
-  std::string body = {};  // frame that the poses are of
-  std::vector<localization::StampedPose> poses = {};
-  std::size_t unknown_yaws = 0;  // poses that state no use of their yaw
-
-  // Drivers state a large variance for what they do not measure, or leave the yaw at 0.
-  bool lacks_yaw() const {
-    const auto differs = [&](const localization::StampedPose& p) { return p.pose.yaw != poses[0].pose.yaw; };
-    return 2 * unknown_yaws > poses.size() || (poses.size() > 1 && std::ranges::none_of(poses, differs));
-  }
-};
-struct ScanTopic {
-  std::string frame = {};
-  std::vector<localization::LogEvent> scans = {};
-};
-struct ImuTopic {
-  std::vector<BagImu> readings = {};
-};
-struct FixTopic {
-  std::string frame = {};
-  std::vector<BagFix> fixes = {};
-  std::size_t without_fix = 0;
-};
-struct CloudTopic {
-  std::string frame = {};
-  std::size_t clouds = 0;
-};
-
-localization::Pose2 level(const Eigen::Isometry3d& pose) {
-  return {pose.translation().x(), pose.translation().y(), std::atan2(pose(1, 0), pose(0, 0))};
-}
+constexpr double kMaxTilt = 0.2;  // rad: a level scan 10 m away is then 2 m higher or lower
 
 // Seen from above, the beams of a scanner that hangs upside down run from right to left in the other order.
 void turn_over(localization::LaserScan& scan) {
@@ -77,29 +44,14 @@ class BagReader {
       : path_(path), wanted_(topics) {}
 
   void read(const BagMessage& message) {
-    guarded(message, [&] {
-      if (message.type == "nav_msgs/msg/Odometry")
-        odometry(message);
-      else if (message.type == "sensor_msgs/msg/LaserScan")
-        scan(message);
-      else if (message.type == "tf2_msgs/msg/TFMessage")
-        frames(message);
-      else if (message.type == "sensor_msgs/msg/Imu")
-        imu(message);
-      else if (message.type == "sensor_msgs/msg/NavSatFix")
-        fix(message);
-      else if (message.type == "sensor_msgs/msg/PointCloud2")
-        cloud(message);
-      else
-        ++others_[{std::string(message.topic), std::string(message.type)}];
-    });
+    guarded(message, [&] { topics_.add(message); });
   }
 
   /// Returns the topic of point clouds to read with read_clouds(), if there is any.
   std::optional<ChosenClouds> choose_clouds() {
     const auto chosen =
-        largest(clouds_, "point clouds are", [](const CloudTopic& topic) { return topic.clouds; });
-    if (chosen == clouds_.end()) return {};
+        largest(topics_.clouds, "point clouds are", [](const CloudTopic& topic) { return topic.clouds; });
+    if (chosen == topics_.clouds.end()) return {};
     const auto place = place_of(chosen->second.frame, body());
     return ChosenClouds{chosen->first, place};
   }
@@ -110,7 +62,7 @@ class BagReader {
     if (message.topic != chosen.topic || message.type != "sensor_msgs/msg/PointCloud2") return;
     guarded(message, [&] {
       BagCloud cloud = read_cloud(message);
-      const localization::Pose2 mount = level(chosen.body_from_sensor);
+      const localization::Pose2 mount = level_pose(chosen.body_from_sensor);
       const Eigen::Matrix3f upright =
           (Eigen::AngleAxisd(-mount.yaw, Eigen::Vector3d::UnitZ()) * chosen.body_from_sensor.linear())
               .cast<float>();
@@ -123,11 +75,11 @@ class BagReader {
   void leave_clouds_out(const std::string& topic) {
     log_.remarks.push_back(
         fmt::format("{} point clouds of {} are not used: the map has no landmarks that 3-D scans show",
-                    clouds_[topic].clouds, topic));
+                    topics_.clouds[topic].clouds, topic));
   }
 
   void check() const {
-    if (odometry_.empty() && scans_.empty() && fixes_.empty() && clouds_.empty())
+    if (topics_.odometry.empty() && topics_.scans.empty() && topics_.fixes.empty() && topics_.clouds.empty())
       throw Error(
           ErrorCode::input,
           unsound_ ? fmt::format("no message of the bag can be read; the first bad one is {}", first_unsound_)
@@ -143,18 +95,18 @@ class BagReader {
     if (unsound_)
       log_.remarks.push_back(fmt::format("{} messages cannot be read and are skipped, the first is {}",
                                          unsound_, first_unsound_));
-    for (const auto& [what, count] : others_)
+    for (const auto& [what, count] : topics_.others)
       log_.remarks.push_back(
           fmt::format("{} messages of type {} of {} are skipped", count, what.second, what.first));
     const std::string base = body();
     const auto scans =
-        largest(scans_, "scans are", [](const ScanTopic& topic) { return topic.scans.size(); });
-    if (scans != scans_.end()) mount(scans->second, base);
+        largest(topics_.scans, "scans are", [](const ScanTopic& topic) { return topic.scans.size(); });
+    if (scans != topics_.scans.end()) mount(scans->second, base);
     add_fixes(base);
     std::vector<localization::StampedPose> poses;
     const auto odometry = chosen_odometry();
     bool lacks_yaw = false;
-    if (odometry != odometry_.end()) {
+    if (odometry != topics_.odometry.end()) {
       lacks_yaw = odometry->second.lacks_yaw();
       poses = std::move(odometry->second.poses);
       std::ranges::stable_sort(poses, {}, &localization::StampedPose::t);
@@ -175,74 +127,8 @@ class BagReader {
     }
   }
 
-  void odometry(const BagMessage& message) {
-    BagOdometry one = read_odometry(message);
-    OdometryTopic& topic = odometry_[std::string(message.topic)];
-    if (topic.poses.empty()) topic.body = std::move(one.body);
-    topic.poses.push_back({one.at.t, level(one.pose)});
-    constexpr double kAnyYaw = std::numbers::pi * std::numbers::pi;  // rad^2; nothing is known of such a yaw
-    topic.unknown_yaws += !(one.yaw_variance >= 0 && one.yaw_variance < kAnyYaw);
-  }
-
-  void scan(const BagMessage& message) {
-    CdrReader in(message.bytes);
-    BagStamp at = read_stamp(in, message.received);
-    const double first = in.number<float>();
-    in.number<float>();  // last angle
-    const double step = in.number<float>();
-    in.number<float>(), in.number<float>();  // time between beams and between scans
-    const float min_range = in.number<float>(), max_range = in.number<float>();
-    std::vector<float> ranges = in.floats();
-    if (!(std::isfinite(first) && std::abs(step) > 0 && std::isfinite(step) && max_range > 0) ||
-        ranges.empty())
-      throw std::runtime_error("a scan has no beams, or its angles or ranges are not finite");
-    for (float& r : ranges)
-      if (!(r >= min_range)) r = 0;
-    ScanTopic& topic = scans_[std::string(message.topic)];
-    if (topic.scans.empty()) topic.frame = std::move(at.frame);
-    topic.scans.push_back({at.t, localization::LaserScan{.robot_from_sensor = {},
-                                                         .first_angle = first,
-                                                         .angle_step = step,
-                                                         .ranges = std::move(ranges),
-                                                         .max_range = max_range}});
-  }
-
-  void frames(const BagMessage& message) {
-    constexpr std::size_t kMinSize = 8 + 4 + 4 + 7 * 8;  // stamp, two empty names, transform
-    CdrReader in(message.bytes);
-    for (std::size_t n = in.count(kMinSize); n > 0; --n) {
-      const BagStamp at = read_stamp(in, message.received);
-      const std::string child = in.text();
-      frames_.place(child, at.frame, read_transform(in));
-    }
-  }
-
-  void imu(const BagMessage& message) {
-    imus_[std::string(message.topic)].readings.push_back(read_imu(message));
-  }
-
-  void fix(const BagMessage& message) {
-    BagFix one = read_fix(message);
-    FixTopic& topic = fixes_[std::string(message.topic)];
-    if (topic.frame.empty()) topic.frame = one.at.frame;
-    if (one.is_fix)
-      topic.fixes.push_back(std::move(one));
-    else
-      ++topic.without_fix;
-  }
-
-  void cloud(const BagMessage& message) {
-    const BagStamp at = read_cloud_stamp(message);
-    CloudTopic& topic = clouds_[std::string(message.topic)];
-    if (topic.clouds++ == 0) topic.frame = at.frame;
-  }
-
   void check_wanted() const {
-    std::vector<std::string> known;
-    const auto add = [&](const auto& topics) {
-      for (const auto& [name, topic] : topics) known.push_back(name);
-    };
-    add(odometry_), add(scans_), add(clouds_), add(imus_), add(fixes_);
+    const std::vector<std::string> known = topics_.names();
     for (const std::string& name : wanted_)
       if (std::ranges::find(known, name) == known.end())
         throw Error(ErrorCode::usage, "the bag has no messages that are read of the topic " + name,
@@ -279,16 +165,16 @@ class BagReader {
   std::map<std::string, OdometryTopic>::iterator chosen_odometry() {
     if (!odometry_chosen_)
       odometry_chosen_ =
-          largest(odometry_, "odometry is", [](const auto& topic) { return topic.poses.size(); });
+          largest(topics_.odometry, "odometry is", [](const auto& topic) { return topic.poses.size(); });
     return *odometry_chosen_;
   }
   std::string body() {
     const auto odometry = chosen_odometry();
-    return odometry == odometry_.end() ? "base_link" : odometry->second.body;
+    return odometry == topics_.odometry.end() ? "base_link" : odometry->second.body;
   }
 
   Eigen::Isometry3d place_of(const std::string& sensor, const std::string& body) {
-    const auto body_from_sensor = frames_.transform(body, sensor);
+    const auto body_from_sensor = topics_.frames.transform(body, sensor);
     if (!body_from_sensor)
       log_.remarks.push_back(fmt::format(
           "no transform leads from {} to {}: the sensor is taken to be in the middle of the robot", sensor,
@@ -305,16 +191,16 @@ class BagReader {
                   path_.string(), "scans of level scanners are read; --topic names another");
     for (localization::LogEvent& event : topic.scans) {
       auto& scan = std::get<localization::LaserScan>(event.what);
-      scan.robot_from_sensor = level(place);
+      scan.robot_from_sensor = level_pose(place);
       if (place(2, 2) < 0) turn_over(scan);
     }
     std::ranges::move(topic.scans, std::back_inserter(log_.events));
   }
 
   void add_fixes(const std::string& body) {
-    const auto chosen = largest(fixes_, "satellite fixes are",
+    const auto chosen = largest(topics_.fixes, "satellite fixes are",
                                 [](const FixTopic& topic) { return topic.fixes.size() + topic.without_fix; });
-    if (chosen == fixes_.end()) return;
+    if (chosen == topics_.fixes.end()) return;
     const FixTopic& topic = chosen->second;
     if (topic.without_fix)
       log_.remarks.push_back(fmt::format("{} messages of {} are without a satellite fix and are skipped",
@@ -341,82 +227,21 @@ class BagReader {
   }
 
   void add_imu(const std::string& body, std::vector<localization::StampedPose>& poses, bool lacks_yaw) {
-    const auto chosen =
-        largest(imus_, "inertial readings are", [](const ImuTopic& topic) { return topic.readings.size(); });
-    if (chosen == imus_.end()) return;
+    const auto chosen = largest(topics_.imus, "inertial readings are",
+                                [](const ImuTopic& topic) { return topic.readings.size(); });
+    if (chosen == topics_.imus.end()) return;
     std::vector<BagImu>& readings = chosen->second.readings;
     std::ranges::stable_sort(readings, {}, [](const BagImu& one) { return one.at.t; });
     const Eigen::Matrix3d turn = place_of(readings[0].at.frame, body).linear();
-    add_rates(chosen->first, readings, turn, poses, lacks_yaw);
-    add_headings(chosen->first, readings, turn);
-  }
-
-  void add_rates(const std::string& topic, const std::vector<BagImu>& readings,
-                 const Eigen::Matrix3d& body_from_imu, std::vector<localization::StampedPose>& poses,
-                 bool lacks_yaw) {
-    std::vector<TurnRate> rates;
-    for (const BagImu& one : readings)
-      if (one.rate) rates.push_back({one.at.t, (body_from_imu * *one.rate).z(), one.rate_variance});
-    if (rates.empty()) return;
-    if (poses.empty() || !lacks_yaw || rates.size() < 2) {
-      log_.remarks.push_back(fmt::format("{} angular velocities of {} are not used: {}", rates.size(), topic,
-                                         poses.empty() ? "there is no odometry"
-                                         : !lacks_yaw  ? "the odometry has a yaw"
-                                                       : "two are needed"));
-      return;
-    }
-    poses = with_yaw_of_gyro(std::move(poses), rates);
-    std::string remark =
-        fmt::format("the odometry has no yaw: {} angular velocities of {} give it", rates.size(), topic);
-    if (const double variance = yaw_variance_per_second(rates); variance > 0) {
-      log_.odometry.emplace();
-      log_.odometry->yaw_per_metre = 0;
-      log_.odometry->yaw_per_radian = kGyroScaleSd * kGyroScaleSd;
-      log_.odometry->yaw_per_second = variance;
-      log_.drift.yaw_rate_sd = kGyroBias;
-    } else {
-      remark += "; they state no covariance";
-    }
-    log_.remarks.push_back(remark);
-  }
-
-  void add_headings(const std::string& topic, const std::vector<BagImu>& readings,
-                    const Eigen::Matrix3d& body_from_imu) {
-    std::size_t used = 0, unstated = 0;
-    for (const BagImu& one : readings) {
-      if (!one.orientation) continue;
-      if (!(one.yaw_variance > 0)) {
-        ++unstated;
-        continue;
-      }
-      const Eigen::Matrix3d world_from_body = one.orientation->toRotationMatrix() * body_from_imu.transpose();
-      log_.events.push_back(
-          {one.at.t, localization::HeadingFix{std::atan2(world_from_body(1, 0), world_from_body(0, 0)),
-                                              std::sqrt(one.yaw_variance)}});
-      ++used;
-    }
-    if (used)
-      log_.remarks.push_back(
-          fmt::format("{} orientations of {} are read as a compass; if its yaw does not start at east, --set "
-                      "use_fixes=false "
-                      "leaves it out",
-                      used, topic));
-    if (unstated)
-      log_.remarks.push_back(
-          fmt::format("{} orientations of {} state no covariance and are not used", unstated, topic));
+    add_turn_rates(log_, chosen->first, readings, turn, poses, lacks_yaw);
+    add_headings(log_, chosen->first, readings, turn);
   }
 
   const std::filesystem::path& path_;
   const std::vector<std::string>& wanted_;
   localization::RobotLog log_;
-  std::map<std::string, OdometryTopic> odometry_;
   std::optional<std::map<std::string, OdometryTopic>::iterator> odometry_chosen_;
-  std::map<std::string, ScanTopic> scans_;
-  std::map<std::string, ImuTopic> imus_;
-  std::map<std::string, FixTopic> fixes_;
-  std::map<std::string, CloudTopic> clouds_;
-  FrameTree frames_;
-  std::map<std::pair<std::string, std::string>, std::size_t> others_;  // by topic and type
+  BagTopics topics_;
   std::size_t unsound_ = 0;
   std::string first_unsound_;
 };

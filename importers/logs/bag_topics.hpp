@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+#include "importers/logs/bag_messages.hpp"
+#include "importers/logs/frame_tree.hpp"
+#include "localization/robot_log.hpp"
+namespace waymark::importers {
+
+/// Odometry of one topic.
+struct OdometryTopic {
+  std::string body = {};  ///< frame that the poses are of
+  std::vector<localization::StampedPose> poses = {};
+  std::size_t unknown_yaws = 0;  ///< poses that state no use of their yaw
+
+  /// Returns whether the yaw is not measured: drivers then state a large variance, or leave it at 0.
+  bool lacks_yaw() const;
+};
+
+/// Scans of one topic of 2-D scanners.
+struct ScanTopic {
+  std::string frame = {};
+  std::vector<localization::LogEvent> scans = {};
+};
+
+struct ImuTopic {
+  std::vector<BagImu> readings = {};
+};
+
+struct FixTopic {
+  std::string frame = {};
+  std::vector<BagFix> fixes = {};
+  std::size_t without_fix = 0;  ///< messages
+};
+
+/// Point clouds of one topic, which are counted: together they do not fit into memory.
+struct CloudTopic {
+  std::string frame = {};
+  std::size_t clouds = 0;
+};
+
+/// What the messages of a bag hold, by topic.
+struct BagTopics {
+  std::map<std::string, OdometryTopic> odometry = {};
+  std::map<std::string, ScanTopic> scans = {};
+  std::map<std::string, ImuTopic> imus = {};
+  std::map<std::string, FixTopic> fixes = {};
+  std::map<std::string, CloudTopic> clouds = {};
+  FrameTree frames = {};
+  std::map<std::pair<std::string, std::string>, std::size_t> others = {};  ///< not read, by topic and type
+
+  /// Adds a message. Throws std::runtime_error for one that cannot be read.
+  void add(const BagMessage& message);
+
+  /// Returns the names of the topics that are read.
+  std::vector<std::string> names() const;
+};
+
+}  // namespace waymark::importers
