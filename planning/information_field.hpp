@@ -15,6 +15,7 @@ struct LandmarkSensing {
   double sightings_per_metre = 1;          ///< of each landmark in view
   double correlation_per_range = 0.4;      ///< length over which a landmark's map error repeats, in ranges
   double min_confidence = 0.5;             ///< less probable landmarks count as absent
+  bool identities_known = true;            ///< false: sightings can be taken for other landmarks
   localization::LineOfSight visible = {};  ///< empty: always free; must be thread-safe
 };
 

@@ -19,7 +19,8 @@ constexpr double kRepeated = 0.63;
 
 WorldBeliefs::WorldBeliefs(const Symmetric3& start, const Odometry& odometry,
                            const localization::LandmarkGrid& map, std::int64_t worlds, std::int64_t seed)
-    : beliefs_(static_cast<std::size_t>(worlds), DriveBelief(start, odometry)) {
+    : beliefs_(static_cast<std::size_t>(worlds), DriveBelief(start, odometry)),
+      rivals_(std::make_shared<const Rivals>(map)) {
   for (std::int64_t world = 0; world < worlds; ++world) {
     Random random(static_cast<std::uint64_t>(seed * 1'000'003 + world));
     std::vector<Draw>& draws = draws_.emplace_back();
@@ -46,7 +47,11 @@ void WorldBeliefs::see(const localization::Pose2& pose, double length, const loc
       const Draw& draw = draws_[world][i];
       if (!draw.exists) continue;
       const double repeated = draw.visible < detection ? kRepeated : 0;
-      add(sums[world], information, length * (1 - kRepeated + repeated / detection));
+      const double recognised =
+          sensing.identities_known
+              ? 1
+              : std::exp(-rivals_->expected(beliefs_[world].pose(), pose, i, sensing.coverage));
+      add(sums[world], information, length * recognised * (1 - kRepeated + repeated / detection));
     }
   });
   for (std::size_t world = 0; world < sums.size(); ++world)

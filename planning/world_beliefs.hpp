@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <vector>
 #include "planning/odometry_belief.hpp"
+#include "planning/rivals.hpp"
 #include "planning/route_search.hpp"
 namespace waymark::planning {
 
@@ -10,13 +12,15 @@ namespace waymark::planning {
 /// sighting, one that is low or behind a bump at most of them. So each world draws once per landmark whether
 /// it exists, by its confidence, and how well it is seen: its detections have the sensor's probability on
 /// average, and an intra-class correlation of 0.4.
+/// - Without identities, a landmark counts with exp(-n), n the expected number of its rivals (Rivals): the
+///   probability that a sighting is taken for no other, if wrong ones are independent.
 class WorldBeliefs {
  public:
   WorldBeliefs(const Symmetric3& start, const Odometry& odometry, const localization::LandmarkGrid& map,
                std::int64_t worlds, std::int64_t seed);
 
   void drive(const DriveStep& step);
-  /// Adds what is seen on `length` metres at a pose.
+  /// Adds what is seen on `length` metres at a pose. `map` is that of the constructor.
   void see(const localization::Pose2& pose, double length, const localization::LandmarkGrid& map,
            const LandmarkSensing& sensing);
   /// Returns the covariance of the error over all worlds.
@@ -30,6 +34,7 @@ class WorldBeliefs {
     double visible;  // in [0, 1): seen well where the probability of detection is larger
   };
   std::vector<DriveBelief> beliefs_;
+  std::shared_ptr<const Rivals> rivals_;
   std::vector<std::vector<Draw>> draws_;  // per world and landmark
 };
 

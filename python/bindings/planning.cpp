@@ -43,6 +43,7 @@ const Keywords<workflows::RouteRequest>& route_keywords() {
                               .add("odometry", &R::odometry)
                               .add("speed", &R::speed)
                               .add("sensor_height", &R::sensor_height)
+                              .add("identities_known", &R::identities_known)
                               .add("worlds", &R::worlds)
                               .add("alternatives", &R::alternatives)
                               .add("seed", &R::seed)

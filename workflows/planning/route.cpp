@@ -168,6 +168,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   for (const Waypoint& point : points)
     stops.push_back(
         cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
+  planner.sensing.identities_known = request.identities_known;
   planner.sensing.visible =
       planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
   problem.field =

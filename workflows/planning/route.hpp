@@ -12,22 +12,23 @@ namespace waymark::workflows {
 /// Request of a route over a map. Positions are in the map's CRS.
 struct RouteRequest {
   std::string map, output;
-  std::string from, to;          ///< "X,Y" or "X,Y,YAW" (degrees from east towards north)
-  std::vector<std::string> via;  ///< "X,Y", in order
-  std::string hazards = "none";  ///< hazard map (.tif), or none
-  std::string aoi = {};          ///< polygons: the route stays inside; empty: anywhere
-  std::string sensor;            ///< name or file (.json) of a sensor profile
-  double range = 0, view = 0;    ///< metres, degrees; 0: those of the sensor
-  double limit_sigma = 0;        ///< metres; 0: none
-  double keep_landmarks = 0;     ///< number; 0: not wanted
-  double weight = 0;             ///< metres of detour per metre at an sd of 1 m
-  bool min_sigma = false;        ///< the smallest worst sd
-  bool by_quality = false;       ///< keep_landmarks sums qualities
-  double cell = 2;               ///< metres
-  double start_sd = 0;           ///< metres; 0: that of the odometry's log, else 0.1
-  std::string odometry;          ///< log of the vehicle, whose odometry noise is used; empty: the defaults
-  double speed = 0.5;            ///< m/s, turns biases of rates into errors per metre
-  std::int64_t worlds = 32;      ///< random sets of existing landmarks
+  std::string from, to;           ///< "X,Y" or "X,Y,YAW" (degrees from east towards north)
+  std::vector<std::string> via;   ///< "X,Y", in order
+  std::string hazards = "none";   ///< hazard map (.tif), or none
+  std::string aoi = {};           ///< polygons: the route stays inside; empty: anywhere
+  std::string sensor;             ///< name or file (.json) of a sensor profile
+  double range = 0, view = 0;     ///< metres, degrees; 0: those of the sensor
+  double limit_sigma = 0;         ///< metres; 0: none
+  double keep_landmarks = 0;      ///< number; 0: not wanted
+  double weight = 0;              ///< metres of detour per metre at an sd of 1 m
+  bool min_sigma = false;         ///< the smallest worst sd
+  bool by_quality = false;        ///< keep_landmarks sums qualities
+  double cell = 2;                ///< metres
+  double start_sd = 0;            ///< metres; 0: that of the odometry's log, else 0.1
+  std::string odometry;           ///< log of the vehicle, whose odometry noise is used; empty: the defaults
+  double speed = 0.5;             ///< m/s, turns biases of rates into errors per metre
+  bool identities_known = false;  ///< false: sightings can be taken for other landmarks
+  std::int64_t worlds = 32;       ///< random sets of existing landmarks
   std::int64_t alternatives = 1;
   std::int64_t seed = 1;
   std::vector<std::string> dem = {};  ///< terrain that hides landmarks, for clearance and tilt at the
