@@ -109,6 +109,9 @@ void describe_navigation(DriveSettings& d, OptionVisitor& field) {
         {.help = "Method of `waymark localize`", .choices = {"ekf", "ukf", "pf", "odometry"}});
   field("sensor", n.sensor, {.help = "Sensor profile of the plan and the localizer"});
   field("hazards", n.hazards, {.help = "Hazard map (.tif) that new routes avoid, or none"});
+  field("dem", n.dem,
+        {.help = "Elevation model whose terrain hides landmarks when a route is planned again; empty: that "
+                 "stored in the map"});
   field("vehicle", n.vehicle, {.help = "Vehicle that hazards are judged for: a name or a file"});
   field("limit_sigma", n.limit_sigma,
         {.help = "Largest standard deviation of the position, metres; 0: none", .min = 0, .max = 1e3});

@@ -56,6 +56,7 @@ struct NavigationModel {
   std::string method = "ekf";  ///< of `waymark localize`; identities are unknown
   std::string sensor = "horizontal_laser";
   std::string hazards = "none";   ///< made by `waymark hazards`
+  std::string dem;                ///< terrain that hides landmarks; empty: that stored in the map, or none
   std::string vehicle = "rover";  ///< of `waymark vehicles`, or a file
   double limit_sigma = 0;         ///< metres, of the position; 0: none
   double sd_factor = 1.5;         ///< tolerated ratio of the estimated sd to the planned one

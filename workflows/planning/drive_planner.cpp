@@ -43,8 +43,8 @@ planning::Symmetric3 belief_of(const localization::PoseEstimate& pose) {
 DrivePlanner::DrivePlanner(localization::LandmarkGrid landmarks, Settings settings,
                            std::shared_ptr<const HazardClasses> hazards)
     : landmarks_(std::move(landmarks)),
-      settings_(settings),
-      sensing_{.coverage = settings.coverage},
+      settings_(std::move(settings)),
+      sensing_{.coverage = settings_.coverage, .visible = settings_.visible},
       hazards_(std::move(hazards)) {}
 
 std::optional<DrivePlan> DrivePlanner::plan(const DrivePlanRequest& request) const {

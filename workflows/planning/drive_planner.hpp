@@ -34,6 +34,7 @@ class DrivePlanner {
     double limit_sigma = 0;  ///< metres; 0: none
     double clearance = 1.5;  ///< metres between the vehicle's middle and an obstacle
     localization::OdometryNoise noise = {};
+    localization::LineOfSight visible = {};  ///< empty: terrain hides no landmark; must be thread-safe
   };
   /// `hazards` may be null.
   DrivePlanner(localization::LandmarkGrid landmarks, Settings settings,

@@ -91,15 +91,19 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   std::shared_ptr<const HazardClasses> hazards;
   if (model.hazards != "none")
     hazards = std::make_shared<HazardClasses>(resolved(folder, model.hazards), map);
-  Navigator navigator(model, vehicle, settings.speed, settings.laser_height, live,
-                      DrivePlanner(localization::LandmarkGrid(all_landmarks(map, sensor.get())),
-                                   {.coverage = coverage,
-                                    .cell = model.cell,
-                                    .limit_sigma = model.limit_sigma,
-                                    .clearance = vehicle.track_width() / 2 + model.margin,
-                                    .noise = odometry.white()},
-                                   hazards),
-                      stations, report);
+  std::vector<std::string> dem;
+  if (!model.dem.empty()) dem.push_back(resolved(folder, model.dem));
+  Navigator navigator(
+      model, vehicle, settings.speed, settings.laser_height, live,
+      DrivePlanner(localization::LandmarkGrid(all_landmarks(map, sensor.get())),
+                   {.coverage = coverage,
+                    .cell = model.cell,
+                    .limit_sigma = model.limit_sigma,
+                    .clearance = vehicle.track_width() / 2 + model.margin,
+                    .noise = odometry.white(),
+                    .visible = planning_line_of_sight(map, dem, {.sensor_height = settings.laser_height})},
+                   hazards),
+      stations, report);
   const auto motion = testbed::make_motion(scene.terrain, scene.solids, settings, start, world.seed);
   testbed::DriveSensors sensors(world, place);
   std::vector<testbed::DriveStep> steps;

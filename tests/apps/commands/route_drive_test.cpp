@@ -121,6 +121,7 @@ TEST_F(RouteDriveCommand, RocksThatTheMapLacksAreAvoided) {
 TEST_F(RouteDriveCommand, BadRoutesAreRefused) {
   EXPECT_THAT(simulate({{"method", "ekf"}}).err, HasSubstr("drive.navigation.map is missing"));
   EXPECT_THAT(simulate({{"map", "none.gpkg"}}).err, HasSubstr("none.gpkg"));
+  EXPECT_THAT(simulate({{"map", "map.gpkg"}, {"dem", "none.tif"}}).err, HasSubstr("none.tif"));
   const auto with = [&](const std::string& route) {
     write_text(folder_ / "route.csv", route);
     const Outcome refused = simulate({{"map", "map.gpkg"}});
