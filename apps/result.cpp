@@ -65,6 +65,13 @@ ResultValue text_or_null(std::string text) {
   return text;
 }
 
+std::string result_object(const std::vector<std::pair<std::string, ResultValue>>& values) {
+  Json object = Json::object();
+  for (const auto& [name, value] : values)
+    object[name] = std::visit([](const auto& one) { return as_json(one); }, value);
+  return object.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
 void print_result(std::span<const ResultKey> declared,
                   const std::vector<std::pair<std::string, ResultValue>>& values) {
   for (const auto& [name, value] : values)

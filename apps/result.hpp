@@ -34,6 +34,9 @@ using ResultValue = std::variant<std::monostate, bool, std::int64_t, double, std
 /// Returns the text; null if it is empty.
 ResultValue text_or_null(std::string text);
 
+/// Returns the values as the text of a JSON object, for a key of the kind object or objects.
+std::string result_object(const std::vector<std::pair<std::string, ResultValue>>& values);
+
 /// Prints the values as one JSON object on standard output, in the order of the declared keys. Throws
 /// std::logic_error for a key that is missing or not declared, and for a value of another kind.
 void print_result(std::span<const ResultKey> declared,

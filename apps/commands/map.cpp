@@ -46,21 +46,40 @@ class MapDrive final : public Command {
              Argument{"--topic", "NAME", &request_.log_format.topics,
                       "Read this topic of a bag that has several of its type; may be repeated"}
                  .or_else("that with the most messages"),
-             Argument{"--robot", "K", &request_.log_format.robot,
-                      "Number of the robot in an MRCLAM dataset"}},
-        .examples = {
-            {"waymark map intel.clf --poses corrected.csv -o office.gpkg", "Corners and ends of walls"},
-            {"waymark map drive.jsonl --scans poles -o street.gpkg",
-             "Posts, by the true poses of a simulated drive"}}};
+             Argument{"--robot", "K", &request_.log_format.robot, "Number of the robot in an MRCLAM dataset"},
+             format_option(&format_)},
+        .examples = {{"waymark map intel.clf --poses corrected.csv -o office.gpkg",
+                      "Corners and ends of walls"},
+                     {"waymark map drive.jsonl --scans poles -o street.gpkg",
+                      "Posts, by the true poses of a simulated drive"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.command_line = session.command_line;
-    workflows::map_drive(request_, console_callbacks(session));
+    const workflows::DriveMapResult made =
+        workflows::map_drive(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(), {{"map", request_.map},
+                                   {"crs", made.crs},
+                                   {"looks", made.looks},
+                                   {"sightings", made.sightings},
+                                   {"rejected", made.rejected},
+                                   {"landmarks", made.landmarks}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"map", ResultKind::text, "Map that was written"},
+            {"crs", ResultKind::text, "CRS of the poses and of the map"},
+            {"looks", ResultKind::integer, "Scans and sets of sightings at known poses"},
+            {"sightings", ResultKind::integer, "Sightings in these looks"},
+            {"rejected", ResultKind::counts, "Sightings and landmarks left out, by reason"},
+            {"landmarks", ResultKind::counts, "Landmarks by type"}};
+  }
+
+  std::string format_ = "text";
   workflows::DriveMapRequest request_;
 };
 

@@ -45,20 +45,40 @@ class ObservabilityCommand final : public Command {
              Argument{"--aoi", "POLYGONS", &request_.aoi, "Cover only this area; cells outside have no value"}
                  .offering(Offer::file),
              Argument{"--drive", "METRES", &request_.drive, "Length of the drive"}.or_else("100"),
-             Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("256")},
+             Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("256"),
+             format_option(&format_)},
         .examples = {{"waymark observability site.gpkg -o info.tif --sensor horizontal_laser",
                       "Where a rover can be localized"},
                      {"waymark observability stand.gpkg -o info.tif --sensor map --cell 5 --drive 500",
-                      "For the sensor that the map records, over longer drives"}}};
+                      "For the sensor that the map records, over longer drives"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.threads = static_cast<int>(session.threads);
-    workflows::make_observability(request_, console_callbacks(session));
+    const workflows::ObservabilityResult made =
+        workflows::make_observability(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(),
+                   {{"raster", request_.output},
+                    {"columns", made.columns},
+                    {"rows", made.rows},
+                    {"seen", made.seen},
+                    {"median_sd_m", made.seen > 0 ? ResultValue(made.median_sd) : ResultValue()}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"raster", ResultKind::text, "Raster that was written"},
+            {"columns", ResultKind::integer, "Its columns"},
+            {"rows", ResultKind::integer, "Its rows"},
+            {"seen", ResultKind::number, "Fraction of the cells with a landmark in sight, 0 to 1"},
+            {"median_sd_m", ResultKind::number,
+             "Median of position_sd over these cells, to 5 %; null: no landmark is in sight"}};
+  }
+
+  std::string format_ = "text";
   workflows::ObservabilityRequest request_;
 };
 

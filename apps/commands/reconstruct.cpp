@@ -72,18 +72,21 @@ class Reconstruct final : public Command {
                  .offering(Offer::file),
              Argument{"--work", "DIR", &request_.work,
                       "Keep finished steps here, so that a killed or changed run does only what is missing"}
-                 .offering(Offer::folder)},
-        .examples = {
-            {"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
-            {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
-             "The map in one command"},
-            {"waymark reconstruct images --control gcp_list.txt -o site",
-             "From pictures and surveyed points"},
-            {"waymark reconstruct images --map orbital_mosaic.tif -o site",
-             "From pictures and an orthophoto of the site"},
-            {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif --until "
-             "dem -o site",
-             "A DEM from poses of COLMAP, started at a coarse one"}}};
+                 .offering(Offer::folder),
+             format_option(&format_)},
+        .examples = {{"waymark reconstruct images --cameras cameras.json -o site",
+                      "DEM, orthophoto and a job"},
+                     {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
+                      "The map in one command"},
+                     {"waymark reconstruct images --control gcp_list.txt -o site",
+                      "From pictures and surveyed points"},
+                     {"waymark reconstruct images --map orbital_mosaic.tif -o site",
+                      "From pictures and an orthophoto of the site"},
+                     {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem "
+                      "mola.tif --until "
+                      "dem -o site",
+                      "A DEM from poses of COLMAP, started at a coarse one"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
@@ -93,10 +96,38 @@ class Reconstruct final : public Command {
                                        : ReconstructUntil::ortho;
     request_.threads = static_cast<int>(session.threads);
     request_.command_line = session.command_line;
-    return workflows::reconstruct(request_, console_callbacks(session)).exit_code();
+    const workflows::ReconstructResult made =
+        workflows::reconstruct(request_, console_callbacks(session, format_));
+    if (format_ == "json") print_made(made);
+    return made.exit_code();
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"folder", ResultKind::text, "Folder that was written"},
+            {"images", ResultKind::integer, "Images with a pose"},
+            {"failed", ResultKind::integer, "Images without a pose"},
+            {"crs", ResultKind::text, "CRS of poses and products; null: the frame is arbitrary"},
+            {"cells", ResultKind::integer, "Cells of the DEM; null: none was made"},
+            {"measured", ResultKind::integer, "Cells with a height; null as cells"},
+            {"map", ResultKind::text, "Map that was written; null: none"},
+            {"landmarks", ResultKind::counts, "Landmarks of the map by type"}};
+  }
+
+  void print_made(const workflows::ReconstructResult& made) const {
+    const auto if_dem = [&](std::int64_t n) { return made.cells > 0 ? ResultValue(n) : ResultValue(); };
+    print_result(result_keys(),
+                 {{"folder", request_.folder},
+                  {"images", std::int64_t(made.images)},
+                  {"failed", std::int64_t(made.failed)},
+                  {"crs", text_or_null(made.crs)},
+                  {"cells", if_dem(made.cells)},
+                  {"measured", if_dem(made.kept)},
+                  {"map", text_or_null(made.map && made.map->written ? request_.map : "")},
+                  {"landmarks", made.map ? made.map->landmarks : std::map<std::string, std::int64_t>{}}});
+  }
+
+  std::string format_ = "text";
   workflows::ReconstructRequest request_;
   std::string until_;
 };

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/planning/route.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
 #include "workflows/registries.hpp"
@@ -21,7 +25,7 @@ class RouteCommand final : public Command {
             "with fewer landmarks in sight, --weight is a compromise of length and sd, --least-sigma has the "
             "smallest worst sd.\n\n"
             "OUT.gpkg has the layers route and route_station: the ellipse of the error, the landmarks in "
-            "sight, and the three that inform most. Identities are taken as known.",
+            "sight, and the three that inform most.",
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks"),
              Argument{"--from", "X,Y[,YAW]", &request_.from,
@@ -63,6 +67,11 @@ class RouteCommand final : public Command {
              Argument{"--cell", "METRES", &request_.cell, "Cells of the search"}.or_else("2"),
              Argument{"--start-sd", "METRES", &request_.start_sd, "Sd of the position at the start"}.or_else(
                  "that of the log, else 0.1"),
+             Argument{"--ids", "HOW", &ids_,
+                      "Whether the robot knows which landmark it sees; unknown: one that others resemble in "
+                      "position counts less"}
+                 .one_of({"known", "unknown"})
+                 .or_else("unknown"),
              Argument{"--worlds", "N", &request_.worlds,
                       "Random sets of existing landmarks that check the route"}
                  .or_else("32"),
@@ -78,22 +87,63 @@ class RouteCommand final : public Command {
                  .or_else("1"),
              Argument{"--vehicle", "NAME|FILE", &request_.vehicle, "Vehicle of these bounds"}.or_else(
                  "rover"),
-             Argument{"--seed", "N", &request_.seed, "Seed of the worlds"}.or_else("1")},
-        .examples = {
-            {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor horizontal_laser --limit-sigma 0.5 "
-             "--hazards hazard.tif -o route.gpkg",
-             "The shortest route with an sd of at most half a metre"},
-            {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor stereo_camera --keep-landmarks 3 -o "
-             "route.csv",
-             "Three landmarks in sight wherever possible"}}};
+             Argument{"--seed", "N", &request_.seed, "Seed of the worlds"}.or_else("1"),
+             format_option(&format_)},
+        .examples =
+            {{"waymark route site.gpkg --from 0,0 --to 300,120 --sensor horizontal_laser --limit-sigma 0.5 "
+              "--hazards hazard.tif -o route.gpkg",
+              "The shortest route with an sd of at most half a metre"},
+             {"waymark route site.gpkg --from 0,0 --to 300,120 --sensor stereo_camera --keep-landmarks 3 -o "
+              "route.csv",
+              "Three landmarks in sight wherever possible"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
-    workflows::plan_route(request_, console_callbacks(session));
+    request_.identities_known = ids_ == "known";
+    const workflows::RouteResult planned =
+        workflows::plan_route(request_, console_callbacks(session, format_));
+    if (format_ == "json") print_routes(planned);
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {
+        {"route", ResultKind::text, "File of the routes that was written"},
+        {"routes", ResultKind::objects,
+         "Planned routes, the best first: length_m, worst_sd_m and goal_sd_m of the position, "
+         "without_landmarks_m (length without a landmark in sight), outside_m (length with fewer landmarks "
+         "than --keep-landmarks), worlds_worst_sd_m and worlds_worst_tenth_sd_m (the worst sd over random "
+         "sets of existing landmarks: on average, in the worst tenth), stations"},
+        {"shortest", ResultKind::object, "Shortest route, for comparison; keys as in routes"},
+        {"lower_bound_m", ResultKind::number,
+         "No route on these cells that keeps --limit-sigma is shorter; null without that limit"}};
+  }
+
+  static std::string route_json(const workflows::PlannedRoute& route) {
+    return result_object({{"length_m", route.length},
+                          {"worst_sd_m", route.worst_sd},
+                          {"goal_sd_m", route.final_sd},
+                          {"without_landmarks_m", route.without_landmarks},
+                          {"outside_m", route.outside},
+                          {"worlds_worst_sd_m", route.worlds_mean},
+                          {"worlds_worst_tenth_sd_m", route.worlds_worst_tenth},
+                          {"stations", std::int64_t(route.stations.size())}});
+  }
+
+  void print_routes(const workflows::RouteResult& planned) const {
+    std::vector<std::string> routes;
+    for (const workflows::PlannedRoute& route : planned.routes) routes.push_back(route_json(route));
+    print_result(
+        result_keys(),
+        {{"route", request_.output},
+         {"routes", ResultJson{"[" + fmt::format("{}", fmt::join(routes, ",")) + "]"}},
+         {"shortest", ResultJson{route_json(planned.shortest)}},
+         {"lower_bound_m", request_.limit_sigma > 0 ? ResultValue(planned.lower_bound) : ResultValue()}});
+  }
+
+  std::string format_ = "text", ids_ = "unknown";
   workflows::RouteRequest request_;
 };
 

@@ -50,34 +50,51 @@ class Train final : public Command {
                  .offering(Offer::file),
              {"--colour", "", &request_.colour, "trees in images: train on red, green and blue alone"},
              {"--rounds", "N", &request_.rounds, "Passes over all examples; 0: the default of the model"},
-             {"--seed", "N", &request_.seed, "Another seed gives other initial weights and another order"}},
-        .examples = {
-            {"waymark train craters -o pipeline/craters/built_in_model.cpp", "The shipped model"},
-            {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
-            {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
-             "A verifier of craters, from lunar relief"},
-            {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp", "The shipped network"},
-            {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
-             "Confidence of treetops in canopy models"},
-            {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
-             "Trees in images with near infrared"},
-            {"waymark train sensor drive1.jsonl drive2.jsonl --map site.gpkg -o mine.json",
-             "A sensor profile from drives with true poses"}}};
+             {"--seed", "N", &request_.seed, "Another seed gives other initial weights and another order"},
+             format_option(&format_)},
+        .examples = {{"waymark train craters -o pipeline/craters/built_in_model.cpp", "The shipped model"},
+                     {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
+                     {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
+                      "A verifier of craters, from lunar relief"},
+                     {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp",
+                      "The shipped network"},
+                     {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
+                      "Confidence of treetops in canopy models"},
+                     {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
+                      "Trees in images with near infrared"},
+                     {"waymark train sensor drive1.jsonl drive2.jsonl --map site.gpkg -o mine.json",
+                      "A sensor profile from drives with true poses"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     if (request_.what == "sensor") {
-      workflows::train_sensor({request_.images, map_, request_.output}, console_callbacks(session));
+      const SensorProfile sensor = workflows::train_sensor({request_.images, map_, request_.output},
+                                                           console_callbacks(session, format_));
+      print_trained(sensor.summary);
       return 0;
     }
     if (!map_.empty())
       throw Error(ErrorCode::usage, "--map is for `waymark train sensor`", "train " + request_.what);
     request_.threads = static_cast<int>(session.threads);
-    workflows::train(request_, console_callbacks(session));
+    print_trained(workflows::train(request_, console_callbacks(session, format_)).trained_on);
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"what", ResultKind::text, "What was trained"},
+            {"model", ResultKind::text, "Model or sensor file that was written"},
+            {"trained_on", ResultKind::text, "Scenes, images or logs, examples, rounds and seed"}};
+  }
+
+  void print_trained(const std::string& trained_on) const {
+    if (format_ == "json")
+      print_result(result_keys(),
+                   {{"what", request_.what}, {"model", request_.output}, {"trained_on", trained_on}});
+  }
+
+  std::string format_ = "text";
   workflows::TrainRequest request_;
   std::string map_;
 };

@@ -54,21 +54,40 @@ class View final : public Command {
                  .one_of({"waymark", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam", "g2o",
                           "toro", "points"})
                  .or_else("recognised by the files"),
-             Argument{"--robot", "K", &request_.log_format.robot,
-                      "Number of the robot in an MRCLAM dataset"}},
+             Argument{"--robot", "K", &request_.log_format.robot, "Number of the robot in an MRCLAM dataset"},
+             format_option(&format_)},
         .examples = {{"waymark view mars.gpkg -o mars.html", "A landing with its images on the terrain"},
                      {"waymark view mission.gpkg --log mission/log.jsonl --track ekf.csv --track "
                       "odometry.csv -o drive.html",
                       "Play back a drive with two estimates"},
-                     {"waymark view forest/ -o forest.html", "The true trees of a simulated forest"}}};
+                     {"waymark view forest/ -o forest.html", "The true trees of a simulated forest"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
-    workflows::write_view(request_, console_callbacks(session));
+    const workflows::ViewPageResult made =
+        workflows::write_view(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(), {{"page", request_.output},
+                                   {"bytes", made.bytes},
+                                   {"landmarks", made.landmarks},
+                                   {"images", made.images},
+                                   {"tracks", made.tracks},
+                                   {"notes", made.notes}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"page", ResultKind::text, "Page that was written"},
+            {"bytes", ResultKind::integer, "Its size"},
+            {"landmarks", ResultKind::counts, "Landmarks drawn, by type"},
+            {"images", ResultKind::integer, "Posed images"},
+            {"tracks", ResultKind::integer, "Tracks, the true poses of the log among them"},
+            {"notes", ResultKind::texts, "What was left out"}};
+  }
+
+  std::string format_ = "text";
   workflows::ViewPageRequest request_;
 };
 

@@ -45,7 +45,7 @@ Crs crs_of_poses(const std::string& text) {
 
 }  // namespace
 
-void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
+DriveMapResult map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   if (!(request.max_range > 0 && std::isfinite(request.max_range)))
     throw Error(ErrorCode::usage, "the range must be above 0 m", "--max-range", "e.g. --max-range 40");
   check_map_output(request.map);
@@ -91,6 +91,10 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
         "detector of single objects, such as --scans poles: {}",
         made.untyped, request.log));
   }
+  DriveMapResult result{.crs = contents.crs.id(),
+                        .looks = std::ssize(looks),
+                        .sightings = stage.counts.in,
+                        .rejected = {stage.counts.rejected.begin(), stage.counts.rejected.end()}};
   contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
   std::set<std::string> made_types;
   for (const localization::DetectorSpec& detector : localization::laser_detectors())
@@ -102,9 +106,11 @@ void map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
   callbacks.summary(
       fmt::format("{} looks, {} sightings, {} of them beyond {} m, {} improbable landmarks removed\n",
                   looks.size(), sightings, made.too_far, request.max_range, made.improbable));
+  result.landmarks = {written.begin(), written.end()};
   for (const auto& [type, count] : written) callbacks.summary(fmt::format("    {} {}\n", count, type));
   callbacks.summary(
       fmt::format("{}: {} landmarks in {}\n", request.map, contents.landmarks.size(), contents.crs.id()));
+  return result;
 }
 
 }  // namespace waymark::workflows

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 #include "importers/logs/import_log.hpp"
@@ -18,10 +20,19 @@ struct DriveMapRequest {
   std::string command_line = {};  ///< recorded in the map
 };
 
+/// What a drive gave.
+struct DriveMapResult {
+  std::string crs = {};
+  std::int64_t looks = 0;                              ///< scans and sets of sightings at known poses
+  std::int64_t sightings = 0;                          ///< in these looks
+  std::map<std::string, std::int64_t> rejected = {};   ///< sightings and landmarks, by reason
+  std::map<std::string, std::int64_t> landmarks = {};  ///< written, by type
+};
+
 /// Makes a map of what a robot saw from known poses: its sightings become landmarks with evidence, counts and
 /// quality. Poses may cover parts of the drive; the rest is not used.
 /// Throws Error{usage} for unknown detectors, Error{input} for a log without a look at a known pose.
 /// Messages: remarks on the log, counts.
-void map_drive(const DriveMapRequest& request, const Callbacks& callbacks = {});
+DriveMapResult map_drive(const DriveMapRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

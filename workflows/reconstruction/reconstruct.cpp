@@ -161,6 +161,7 @@ double median_height(const pipeline::SurfaceHeights& dem) {
 struct PosesInHand {
   PosedImages images = {};
   std::size_t posed = 0, failed = 0;
+  std::string crs = {};  ///< empty: the frame is arbitrary
   exporters::ReconstructionReport report = {};
 };
 
@@ -187,7 +188,8 @@ PosedPhotos solve_poses_of(const ReconstructRequest& request, const Callbacks& c
 
 PosesInHand solved_poses(const ReconstructRequest& request, const Callbacks& callbacks) {
   const PosedPhotos made = solve_poses_of(request, callbacks);
-  PosesInHand out{.posed = made.posed, .failed = made.failures.size(), .report = report_of_poses(made)};
+  PosesInHand out{
+      .posed = made.posed, .failed = made.failures.size(), .crs = made.crs, .report = report_of_poses(made)};
   if (request.until == ReconstructUntil::poses) return out;
   out.images = read_posed_images({.images = request.images,
                                   .cameras = (fs::path(request.folder) / "cameras.json").string(),
@@ -202,6 +204,7 @@ PosesInHand given_poses(const ReconstructRequest& request, const Callbacks& call
   PosesInHand out{.images = read_posed_images(
                       {.images = request.images, .cameras = request.cameras, .crs = request.crs}, callbacks)};
   out.posed = out.images.images.size();
+  out.crs = out.images.crs.id();
   out.report = report_of_cameras(out.images, 0);
   const fs::path file = fs::path(request.folder) / "cameras.json";
   write_file(file, camera_file(out.images));
@@ -258,7 +261,7 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
   make_output_folder(folder);
   PosesInHand poses =
       request.cameras.empty() ? solved_poses(request, callbacks) : given_poses(request, callbacks);
-  ReconstructResult result{.images = poses.posed, .failed = poses.failed};
+  ReconstructResult result{.images = poses.posed, .failed = poses.failed, .crs = poses.crs};
   write_report_page(folder, poses.report);
   if (request.until == ReconstructUntil::poses) return result;
 

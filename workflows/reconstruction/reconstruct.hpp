@@ -31,6 +31,7 @@ struct ReconstructResult {
   std::size_t images = 0;             ///< with poses
   std::size_t failed = 0;             ///< without
   std::int64_t cells = 0, kept = 0;   ///< of the DEM; with a height
+  std::string crs = {};               ///< of poses and products; empty: the frame is arbitrary
   std::optional<MapResult> map = {};  ///< if a map was requested
 
   /// Returns the exit code of the program.

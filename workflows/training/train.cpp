@@ -114,7 +114,7 @@ TrainResult train_craters(const TrainRequest& request, const Callbacks& callback
   model.trained_on =
       fmt::format("made-up and testbed scenes 0 to {}, {} px, {} examples, {} rounds, seed {}", scenes - 1,
                   kSceneSide, examples.bowls.size(), training.rounds, request.seed);
-  TrainResult result{pipeline::as_text(model)};
+  TrainResult result{pipeline::as_text(model), model.trained_on};
   if (!request.output.empty()) write_crater_model(request, result.model);
   return result;
 }
@@ -157,7 +157,7 @@ TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& 
   verifier.trained_on =
       fmt::format("{} images of {} areas of measured relief, {} px, {} examples, {} rounds, seed {}", scenes,
                   request.relief.size(), kSceneSide, examples.size(), training.rounds, request.seed);
-  TrainResult result{as_text(verifier)};
+  TrainResult result{as_text(verifier), verifier.trained_on};
   if (!request.output.empty())
     write_model(request.output, result.model,
                 {"waymark train craters --relief DEM,CATALOGUE", "pipeline/craters/relief_verifier.hpp",
@@ -201,7 +201,7 @@ TrainResult train_crowns(const TrainRequest& request, const Callbacks& callbacks
   network.trained_on = fmt::format("{} images, {} trees, {} rounds, seed {}{}", images.size(), trees,
                                    training.rounds, request.seed, held_out);
   callbacks.summary(network.trained_on + "\n");
-  TrainResult result{pipeline::crown_network_as_text(network)};
+  TrainResult result{pipeline::crown_network_as_text(network), network.trained_on};
   if (!request.output.empty()) write_crown_network(request, result.model);
   return result;
 }
@@ -214,7 +214,7 @@ TrainResult train_treetops(const TrainRequest& request, const Callbacks& callbac
   const pipeline::TreeConfidenceModel model =
       train_tree_confidence(static_cast<int>(forests), request.threads, callbacks.progress);
   callbacks.summary(model.trained_on + "\n");
-  TrainResult result{pipeline::as_text(model)};
+  TrainResult result{pipeline::as_text(model), model.trained_on};
   if (!request.output.empty())
     write_model(request.output, result.model,
                 {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
@@ -238,7 +238,7 @@ TrainResult train_rocks(const TrainRequest& request, const Callbacks& callbacks)
   network.trained_on =
       fmt::format("{} testbed views, drawn and oblique ones in proportion, {} rounds, seed {}", views,
                   training.rounds, request.seed);
-  TrainResult result{as_text(network)};
+  TrainResult result{as_text(network), network.trained_on};
   if (!request.output.empty())
     write_model(
         request.output, result.model,

@@ -23,7 +23,8 @@ struct TrainRequest {
 
 /// A trained model.
 struct TrainResult {
-  std::string model;  ///< text (pipeline/vision/network_text.hpp)
+  std::string model;       ///< text (pipeline/vision/network_text.hpp)
+  std::string trained_on;  ///< scenes or images, examples, rounds, seed; one line
 };
 
 /// Trains a model and writes it:

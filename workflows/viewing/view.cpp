@@ -116,7 +116,7 @@ localization::RobotLog read_view_log(const ViewPageRequest& request, const Robot
 
 }  // namespace
 
-void write_view(const ViewPageRequest& asked, const Callbacks& callbacks) {
+ViewPageResult write_view(const ViewPageRequest& asked, const Callbacks& callbacks) {
   ViewPageRequest request = asked;
   std::optional<SceneFolder> scene;
   if (fs::is_directory(request.map)) scene.emplace(request);
@@ -141,6 +141,13 @@ void write_view(const ViewPageRequest& asked, const Callbacks& callbacks) {
   write_file(request.output, page);
   for (const std::string& note : made.notes) callbacks.summary(note + "\n");
   callbacks.summary(fmt::format("{}  {:.1f} MB\n", request.output, double(page.size()) / 1e6));
+  ViewPageResult result{.bytes = std::ssize(page),
+                        .images = std::ssize(made.images),
+                        .tracks = std::ssize(made.tracks),
+                        .notes = made.notes};
+  for (const exporters::ViewLayer& layer : made.layers)
+    result.landmarks[layer.name] = std::ssize(layer.landmarks);
+  return result;
 }
 
 }  // namespace waymark::workflows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 #include "importers/logs/import_log.hpp"
@@ -22,8 +23,17 @@ struct ViewPageRequest {
   std::int64_t max_landmarks = 24000;
 };
 
+/// What a page shows.
+struct ViewPageResult {
+  std::int64_t bytes = 0;                              ///< of the page
+  std::int64_t images = 0;                             ///< with a pose
+  std::int64_t tracks = 0;                             ///< the true poses of the log among them
+  std::vector<std::string> notes = {};                 ///< what was left out
+  std::map<std::string, std::int64_t> landmarks = {};  ///< drawn, by type
+};
+
 /// Writes the page (exporters/view). Throws Error{input} for files that cannot be read, Error{usage} for a
 /// scene folder without truth, Error{output} if the page exceeds 10 MB or cannot be written.
-void write_view(const ViewPageRequest& request, const Callbacks& callbacks = {});
+ViewPageResult write_view(const ViewPageRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

@@ -10,6 +10,7 @@
 #include "core/random.hpp"
 #include "tests/apps/made_dem.hpp"
 #include "tests/apps/made_drive.hpp"
+#include "tests/apps/made_flight.hpp"
 #include "tests/apps/program.hpp"
 
 namespace waymark::test {
@@ -88,6 +89,54 @@ class Results : public testing::Test {
     const Json edited = result({"edit", folder_ / "ab.gpkg", "reject", "r1", "r3"});
     EXPECT_EQ(edited["action"], "reject");
     EXPECT_EQ(edited["landmarks"], Json({"r1", "r3"}));
+    const Json restored = result({"restore", folder_ / "ab.gpkg"});
+    EXPECT_EQ(restored["map"], folder_ / "ab.gpkg");
+    EXPECT_FALSE(std::filesystem::exists(restored["backup"].get<std::string>()));
+    EXPECT_THAT(waymark({"query", folder_ / "ab.gpkg", "--format", "csv"}).out, HasSubstr("r3,"));
+  }
+
+  /// A drive among rocks: a map made of it, a page, a sensor, routes and where its landmarks localize.
+  void check_drives() {
+    const std::string map = import_table("plain", rocks_csv(), "rock");
+    const std::string log = folder_ / "plain.jsonl";
+    write_text(log, drive_log({.named = true}));
+    const Json made = result({"map", log, "-o", folder_ / "made.gpkg"});
+    EXPECT_EQ(made["crs"], "local");
+    EXPECT_GT(made["landmarks"]["rock"], 5);
+    EXPECT_GT(made["sightings"], made["looks"]);
+    const Json page = result({"view", map, "--log", log, "-o", folder_ / "v.html"});
+    EXPECT_EQ(page["bytes"], std::filesystem::file_size(folder_ / "v.html"));
+    EXPECT_EQ(page["landmarks"]["rock"], made_rocks().size());
+    EXPECT_EQ(page["tracks"], 1);
+    const Json sensor = result({"train", "sensor", log, "--map", map, "-o", folder_ / "mine.json"});
+    EXPECT_EQ(sensor["what"], "sensor");
+    EXPECT_THAT(sensor["trained_on"].get<std::string>(), HasSubstr("1 log"));
+    const Json route = result({"route", map, "--from", "0,0", "--to", "8,6", "--sensor", "horizontal_laser",
+                               "--limit-sigma", "1", "-o", folder_ / "route.csv"});
+    const std::string rows = text_of(folder_ / "route.csv");
+    EXPECT_EQ(route["routes"][0]["stations"], std::ranges::count(rows, '\n') - 1);
+    EXPECT_GE(route["routes"][0]["length_m"], route["lower_bound_m"]);
+    EXPECT_GE(route["shortest"]["length_m"], 10);
+    const Json info = result({"observability", map, "-o", folder_ / "i.tif", "--sensor", "horizontal_laser"});
+    EXPECT_GT(info["columns"], 0);
+    EXPECT_GT(info["median_sd_m"], 0);
+  }
+
+  void check_scenes() {
+    write_text(folder_ / "hall.json", R"({"waymark_scenario": 1, "hall": {}})");
+    const Json hall = result({"simulate", folder_ / "hall.json", "-o", folder_ / "hall"});
+    EXPECT_GT(hall["town_landmarks"], 10);
+    EXPECT_EQ(hall["rocks"], 0);
+    const auto site = simulate_flight(folder_.path(), {.pixels = 160});
+    const std::string cameras = site / "truth/cameras.json", images = site / "images";
+    const Json poses =
+        result({"reconstruct", images, "--cameras", cameras, "-o", folder_ / "poses", "--until", "poses"});
+    EXPECT_EQ(poses["images"], 6);
+    EXPECT_TRUE(poses["cells"].is_null() && poses["map"].is_null());
+    const Json dem =
+        result({"reconstruct", images, "--cameras", cameras, "-o", folder_ / "site", "--until", "dem"});
+    EXPECT_GT(dem["measured"], 0);
+    EXPECT_GE(dem["cells"], dem["measured"]);
   }
 
   void check_localize() {
@@ -181,7 +230,8 @@ class Results : public testing::Test {
 
 TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   for (const char* command :
-       {"localize", "web", "merge", "edit", "stac", "report", "hazards", "register", "import"})
+       {"localize", "web", "merge", "edit", "stac", "report", "hazards", "register", "import", "map", "view",
+        "train", "route", "observability", "simulate", "restore", "reconstruct"})
     EXPECT_TRUE(declared_.contains(command)) << command;
   check_import();
   check_merge_and_edit();
@@ -189,6 +239,8 @@ TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   check_files();
   check_hazards_and_peaks();
   check_register();
+  check_drives();
+  check_scenes();
   for (const auto& [command, keys] : declared_)
     EXPECT_TRUE(seen_.contains(keys)) << "no test runs " << command << " --format json";
 }
@@ -213,6 +265,11 @@ TEST_F(Results, ErrorsKeepTheirExitCodesAndStandardOutputStaysEmpty) {
   refused({"report", folder_ / "none.gpkg", "-o", folder_ / "r.html"}, 1);
   refused({"stac", folder_ / "none.gpkg", "-o", folder_ / "s.json"}, 1);
   refused({"web", folder_ / "none.gpkg", "-o", folder_ / "w"}, 1);
+  refused({"restore", map}, 1);
+  refused({"map", folder_ / "none.jsonl", "-o", folder_ / "m.gpkg"}, 1);
+  refused({"view", folder_ / "none.gpkg", "-o", folder_ / "v.html"}, 1);
+  refused({"route", map, "--from", "0,0", "--to", "9,9", "--sensor", "horizontal_laser", "-o", "r.csv"}, 2);
+  refused({"simulate", folder_ / "none.json", "-o", folder_ / "s"}, 1);
 }
 
 }  // namespace
