@@ -978,7 +978,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         threads: 0: one per processor"""
     ...
 
-def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., aoi: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., least_sigma: bool = ..., odometry: _Path = ..., speed: float = ..., sensor_height: float = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
+def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any = ..., progress: Any = ..., hazards: _Path = ..., aoi: _Path = ..., range: float = ..., view: float = ..., limit_sigma: float = ..., keep_landmarks: float = ..., weight: float = ..., by_quality: bool = ..., cell: float = ..., start_sd: float = ..., least_sigma: bool = ..., odometry: _Path = ..., speed: float = ..., sensor_height: float = ..., identities_known: bool = ..., worlds: int = ..., alternatives: int = ..., seed: int = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ...) -> dict[str, Any]:
     """Plans a route and writes it to `output`, as `waymark route`.
 
     start is (x, y) or (x, y, yaw in degrees), goal and each via (x, y), in the map's CRS. One of limit_sigma,
@@ -1000,6 +1000,7 @@ def route(map: Any, start: Any, goal: Any, output: Any, *, sensor: Any, via: Any
         odometry: log of the vehicle, whose odometry noise is used; empty: the defaults
         speed: m/s, turns biases of rates into errors per metre
         sensor_height: metres above the terrain
+        identities_known: false: sightings can be taken for other landmarks
         worlds: random sets of existing landmarks
         alternatives
         seed
