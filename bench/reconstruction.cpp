@@ -7,7 +7,7 @@
 #include "pipeline/reconstruction/adjustment/adjust.hpp"
 #include "pipeline/reconstruction/adjustment/place_on_image.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
-#include "tests/pipeline/reconstruction/made_scene.hpp"
+#include "tests/pipeline/reconstruction/moving_scene.hpp"
 
 namespace waymark::bench {
 using namespace test;
@@ -41,6 +41,20 @@ BENCHMARK(adjust_block)
     ->Args({10, 0})
     ->Unit(benchmark::kMillisecond);
 
+// A flight of 24 images with a rolling shutter: 0 as if it were global, 1 with six more unknowns per image.
+void adjust_moving(benchmark::State& state) {
+  MadeScene made = moving_scene({.points = 1200});
+  if (state.range(0) == 0) made.start.lenses[0].readout_time = 0;
+  const pipeline::Observations seen{.positions = made_positions(made.truth, 0.1, 1)};
+  pipeline::AdjustmentOptions options;
+  options.robust = false;
+  for (auto _ : state) {
+    pipeline::Reconstruction scene = made.start;
+    benchmark::DoNotOptimize(pipeline::adjust(scene, seen, options).sigma0);
+  }
+}
+BENCHMARK(adjust_moving)->ArgName("rolling")->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond);
+
 void triangulate_points(benchmark::State& state) {
   const MadeScene made = made_scene(block(4));
   for (auto _ : state)
@@ -73,6 +87,7 @@ void place_in_image(benchmark::State& state) {
                                         double(cells) / 2 + std::sin(turn) * x + std::cos(turn) * y));
     }
   for (auto _ : state) benchmark::DoNotOptimize(pipeline::place_on_image(mosaic, map).found.has_value());
+  state.SetItemsProcessed(state.iterations() * cells * cells);  // of the orthophoto
 }
 BENCHMARK(place_in_image)
     ->ArgName("cells")

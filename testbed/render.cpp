@@ -12,12 +12,15 @@
 #include "core/grid.hpp"
 #include "core/random.hpp"
 #include "testbed/landing/lit_terrain.hpp"
+#include "testbed/noise.hpp"
 #include "testbed/sensor.hpp"
 
 namespace waymark::testbed {
 namespace {
 
-constexpr double kMinRock = 0.6;  // pixels; smaller rocks change no pixel by more than the noise
+constexpr double kDustAlbedo = 0.3;    // of clouds of fine Martian dust, seen from above
+constexpr double kShieldAlbedo = 0.5;  // of insulation
+constexpr double kMinRock = 0.6;       // pixels; smaller rocks change no pixel by more than the noise
 
 // Rocks and rock shadows that may be visible in each square of an image.
 struct RockTiles {
@@ -102,6 +105,16 @@ RockTiles bin_rocks(const Scene& scene, const View& view, const Sun& sun, double
   return result;
 }
 
+// Pixels that the shield may cover are supersampled, as those near rocks are.
+void mark_shield(const View& view, Grid<std::uint8_t>& busy) {
+  if (!(view.shield.radius > 0)) return;
+  const auto spot = spot_of(view, view.shield.centre);
+  if (!spot) return;
+  const double radius = view.shield.radius * spot->scale + 1;
+  along_line(*spot, *spot, radius, 1, view.columns, view.rows,
+             [&](std::int64_t i, std::int64_t j) { busy(i, j) = 1; });
+}
+
 struct Painter {
   const Scene& scene;
   const LitTerrain& ground;
@@ -137,11 +150,47 @@ struct Painter {
         {{view.x0 + x * view.gsd, view.y0 - y * view.gsd, scene.terrain.max_height() + 100}}, {{0, 0, -1}}};
   }
 
+  // Light of the shield, if the ray meets it before the ground.
+  std::optional<double> shield_light(const Ray<GridFrame>& line, const RayHit& hit) const {
+    const FallingShield& shield = view.shield;
+    if (!(shield.radius > 0)) return std::nullopt;
+    const double across = shield.normal.dot(line.direction.unit);
+    if (!(std::abs(across) > 1e-9)) return std::nullopt;
+    const double range = shield.normal.dot(shield.centre - line.origin.xyz) / across;
+    const double ground_range =
+        hit.end == RayEnd::ground ? hit.range : std::numeric_limits<double>::infinity();
+    const Eigen::Vector3d at = line.origin.xyz + range * line.direction.unit;
+    if (!(range > 0 && range < ground_range && (at - shield.centre).norm() <= shield.radius))
+      return std::nullopt;
+    const Eigen::Vector3d facing = across < 0 ? shield.normal : Eigen::Vector3d(-shield.normal);
+    return brightness(kShieldAlbedo, 1, facing, -line.direction.unit);
+  }
+
+  // Whether the shield stands between a point of the ground and the sun.
+  bool behind_shield(const Eigen::Vector3d& point) const {
+    const FallingShield& shield = view.shield;
+    const double across = shield.normal.dot(light);
+    if (!(shield.radius > 0) || !(std::abs(across) > 1e-9)) return false;
+    const double range = shield.normal.dot(shield.centre - point) / across;
+    return range > 0 && (point + range * light - shield.centre).norm() <= shield.radius;
+  }
+
+  // Light of the ground through the dust, along a ray that falls by `fall` per metre.
+  double through_dust(double from_ground, const Eigen::Vector3d& point, double fall) const {
+    if (!(view.dust.depth > 0)) return from_ground;
+    const double depth = dust_depth(view.dust, point.x(), point.y());
+    if (!(depth > 0)) return from_ground;
+    const double seen = std::exp(-depth / std::max(0.1, fall));
+    const double cloud = brightness(kDustAlbedo, 1, {0, 0, 1}, {0, 0, 1});
+    return seen * from_ground + (1 - seen) * cloud;
+  }
+
   // Light along the ray of a pixel; NaN beyond the terrain.
   double sample(double x, double y, const RockTiles::Tile& tile) const {
     const auto line = ray_through(x, y);
     if (!line) return std::numeric_limits<double>::quiet_NaN();
     const RayHit hit = scene.terrain.cast(*line);
+    if (const auto light_of_shield = shield_light(*line, hit)) return *light_of_shield;
     if (hit.end != RayEnd::ground) return std::numeric_limits<double>::quiet_NaN();
     return sample(*line, hit, tile);
   }
@@ -156,6 +205,7 @@ struct Painter {
     if (angle != 0)
       line->direction.unit = Eigen::AngleAxisd(angle, view.motion.spin.normalized()) * line->direction.unit;
     const RayHit hit = scene.terrain.cast(*line);
+    if (const auto light_of_shield = shield_light(*line, hit)) return *light_of_shield;
     if (hit.end != RayEnd::ground) return std::numeric_limits<double>::quiet_NaN();
     const auto spot = spot_of(view, hit.point.xyz);
     const auto tile_of = [](double at, std::int64_t tiles) {
@@ -168,6 +218,10 @@ struct Painter {
   }
 
   double sample(const Ray<GridFrame>& line, const RayHit& hit, const RockTiles::Tile& tile) const {
+    return through_dust(ground_light(line, hit, tile), hit.point.xyz, -line.direction.unit.z());
+  }
+
+  double ground_light(const Ray<GridFrame>& line, const RayHit& hit, const RockTiles::Tile& tile) const {
     constexpr auto kNone = static_cast<std::uint32_t>(-1);
     const Eigen::Vector3d& along = line.direction.unit;
     const double size = view.camera ? hit.range * pixel_angle : view.gsd;
@@ -179,7 +233,9 @@ struct Painter {
         nearest = *met, rock = k;
     if (rock == kNone) {
       const SurfaceShading look = ground.shading(hit.point.xyz, size);
-      const double lit = look.lit > 0 && behind_rock(tile, hit.point.xyz, kNone) ? 0 : look.lit;
+      const bool hidden =
+          look.lit > 0 && (behind_rock(tile, hit.point.xyz, kNone) || behind_shield(hit.point.xyz));
+      const double lit = hidden ? 0 : look.lit;
       return brightness(look.albedo, lit, Eigen::Vector3d(-look.slope_x, -look.slope_y, 1).normalized(),
                         -along);
     }
@@ -230,13 +286,27 @@ int instants_of(const Scene& scene, const View& view, const Exposure& exposure, 
 
 }  // namespace
 
+double dust_depth(const DustCloud& dust, double x, double y) {
+  if (!(dust.depth > 0 && dust.radius > 0)) return 0;
+  const double east = x - dust.centre.x(), north = y - dust.centre.y(), range = std::hypot(east, north);
+  // Billows run outwards, and grow with the distance.
+  const Fractal billows{.longest = dust.radius / 3,
+                        .shortest = dust.radius / 30,
+                        .amplitude = 0.5,
+                        .hurst = 0.5,
+                        .seed = static_cast<std::uint32_t>(mix_bits(dust.seed))};
+  const double shape = std::exp(-range / dust.radius) * std::max(0.0, 1 + billows.at(east, north).value);
+  return dust.depth * std::min(shape, 1.0);
+}
+
 Pixels render_view(const Scene& scene, const LitTerrain& ground, const View& view, const Exposure& exposure,
                    std::uint64_t noise_seed) {
   if (view.columns < 1 || view.rows < 1) throw Error(ErrorCode::usage, "an image needs at least one pixel");
   if (!(exposure.sun.elevation.value > 0))
     throw Error(ErrorCode::usage, "the sun is below the horizon: nothing to see",
                 "elevation " + std::to_string(exposure.sun.elevation.value) + " degrees");
-  const RockTiles rocks = bin_rocks(scene, view, ground.sun(), kMinRock);
+  RockTiles rocks = bin_rocks(scene, view, ground.sun(), kMinRock);
+  mark_shield(view, rocks.busy);
   const double focal = view.camera ? std::max(view.camera->camera.fx, view.camera->camera.fy) : 1;
   const Painter painter{scene,     ground,
                         view,      exposure,

@@ -40,16 +40,36 @@ struct CameraMotion {
   Eigen::Vector3d spin = Eigen::Vector3d::Zero();      ///< rad/s
 };
 
+/// Dust that rockets raise below a lander.
+struct DustCloud {
+  double depth = 0;                                  ///< largest optical depth, vertical; 0: none
+  double radius = 0;                                 ///< metres at which the depth has fallen to 1 / e
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();  ///< GridFrame
+  std::uint64_t seed = 0;                            ///< of its billows
+};
+
+/// Round shield that falls away below a lander.
+struct FallingShield {
+  double radius = 0;                                 ///< metres; 0: none
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< GridFrame
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+};
+
 /// Central camera, or a vertical map view.
 struct View {
   std::optional<PosedCamera> camera;  ///< its pose is that of the middle row at the middle of the exposure
   CameraMotion motion = {};
+  DustCloud dust = {};
+  FallingShield shield = {};
   std::int64_t columns = 0, rows = 0;  ///< size of a map view
   double x0 = 0, y0 = 0, gsd = 1;      ///< map view: GridFrame of pixel (0, 0), metres per pixel
 };
 View map_view(const Scene& scene, double gsd, std::int64_t columns,
               std::int64_t rows);  ///< about the centre of the scene
 View camera_view(PosedCamera camera, const CameraMotion& motion = {});
+
+/// Returns the optical depth of dust over a point of the ground, straight up.
+double dust_depth(const DustCloud& dust, double x, double y);
 
 /// Renders an image in [0, 1] (full scale 1), not quantised. Pixels that look past the terrain are NaN.
 /// `noise_seed` affects the noise only. The result does not depend on the number of threads.

@@ -34,10 +34,15 @@ struct Flight {
   double line_spacing = 0;       ///< metres
   double from_east = -100, from_north = -100, from_altitude = 500;
   double to_east = 60, to_north = 60, to_altitude = 120;
-  Degrees tilt{0};           ///< of the view, from straight down towards the heading
-  Degrees attitude_sd{1.5};  ///< variation of the attitude about each camera axis
-  double track_sd = 2;       ///< metres, variation of the path
-  DescentModel landing;      ///< of a landing, which has neither lines nor these deviations
+  Degrees tilt{0};            ///< of the view, from straight down towards the heading
+  Degrees attitude_sd{1.5};   ///< variation of the attitude about each camera axis
+  double track_sd = 2;        ///< metres, variation of the path
+  DescentModel landing;       ///< of a landing, which has neither lines nor these deviations
+  double dust = 0;            ///< of a landing: optical depth below the lander on the ground; 0: none
+  double dust_altitude = 60;  ///< metres, below which the rockets raise dust
+  double heat_shield = 0;     ///< of a landing: diameter of a shield that is released at its start; 0: none
+  double heat_shield_speed =
+      15;  ///< metres per second by which the shield falls faster than the lander begins
 };
 
 /// Errors of the reported poses: standard deviations.

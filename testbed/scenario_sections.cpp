@@ -219,6 +219,22 @@ void describe_flight(Flight& f, OptionVisitor& field) {
   field("attitude_sd", f.attitude_sd, {.help = "Standard deviation of the attitude", .min = 0, .max = 45});
   field("track_sd", f.track_sd, {.help = "Standard deviation of the path, metres", .min = 0, .max = 1e4});
   f.landing.describe(field);
+  field("dust", f.dust,
+        {.help = "Landing: optical depth of the dust that rockets raise, seen from the ground; 0: none",
+         .min = 0,
+         .max = 20});
+  field("dust_altitude", f.dust_altitude,
+        {.help = "Landing: metres above the mean height below which rockets raise dust",
+         .min = 1,
+         .max = 1000});
+  field("heat_shield", f.heat_shield,
+        {.help = "Landing: diameter of a heat shield that is released at the start, metres; 0: none",
+         .min = 0,
+         .max = 20});
+  field("heat_shield_speed", f.heat_shield_speed,
+        {.help = "Landing: metres per second by which the shield falls faster than the lander at its release",
+         .min = 1,
+         .max = 200});
 }
 
 }  // namespace waymark::testbed

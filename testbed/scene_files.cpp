@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "testbed/scene_files.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,6 +12,18 @@
 namespace waymark::testbed {
 
 using Json = nlohmann::ordered_json;
+
+namespace {
+
+// Landings begin at the start of 2030.
+std::string time_of_landing(double seconds) {
+  const auto milliseconds = std::llround(seconds * 1e3);
+  const auto second = milliseconds / 1000;
+  return fmt::format("2030-01-{:02}T{:02}:{:02}:{:02}.{:03}Z", 1 + second / 86400, second / 3600 % 24,
+                     second / 60 % 60, second % 60, milliseconds % 1000);
+}
+
+}  // namespace
 
 std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots, bool exact) {
   const Camera camera = camera_of(scenario.lens);
@@ -29,6 +43,9 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
       {"cy", camera.cy},
       {"lens", "brown"},
       {"distortion", std::vector<double>(camera.distortion.begin(), camera.distortion.begin() + 5)}};
+  // Times matter where rows are taken one after the other.
+  const double readout_time = scenario.exposure.readout_time;
+  if (readout_time > 0) file["cameras"]["lens"]["readout_time"] = readout_time;
   Json& images = file["images"] = Json::array();
   for (const Shot& shot : shots) {
     const Eigen::Isometry3d& pose = (exact ? shot.view.grid_from_camera : shot.reported).transform;
@@ -41,6 +58,7 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
       image["rotation_sd"] = scenario.pose_errors.attitude_sd.value;
       image["position_sd"] = scenario.pose_errors.position_sd;
     }
+    if (readout_time > 0 && shot.time) image["taken_utc"] = time_of_landing(*shot.time);
     images.push_back(std::move(image));
   }
   return file.dump(1) + "\n";

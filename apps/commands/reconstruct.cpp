@@ -19,8 +19,8 @@ class Reconstruct final : public Command {
             "(height, its standard deviation, that of the poses, number of views, convergence angle, score, "
             "reason of "
             "no data), orthophoto.tif, report.html and job.json, which `waymark run` turns into the map.\n\n"
-            "Poses without control points, GPS positions, a map image or a coarse DEM have an arbitrary "
-            "scale and end "
+            "Poses without control points, GPS positions, a map image, a coarse DEM or an altimeter have an "
+            "arbitrary scale and end "
             "there. Images "
             "without a pose are named with the reason; the exit code is then 3.\n\n"
             "Heights are measured where two or more images agree. Every other cell has no data and a reason "
@@ -35,10 +35,17 @@ class Reconstruct final : public Command {
                       "Camera file with the poses, in any format that load_images reads"}
                  .or_else("poses are solved from the images")
                  .offering(Offer::file),
-             Argument{"--lens,--camera", "FILE", &request_.lens,
-                      "Camera file whose lens is kept, e.g. cameras.json of an earlier flight"}
+             Argument{
+                 "--lens,--camera", "FILE", &request_.lens,
+                 "Camera file whose lens is kept, e.g. cameras.json of an earlier flight; it may name other "
+                 "images, or none"}
                  .or_else("the lens is calibrated from the images")
                  .offering(Offer::file),
+             Argument{
+                 "--readout-time", "S", &request_.readout_time,
+                 "Seconds from the first to the last row of a rolling shutter: poses are solved with the "
+                 "motion of the camera, which needs times of exposure (EXIF, or taken_utc in --lens)"}
+                 .or_else("that of --lens, else a global shutter"),
              Argument{"--control", "POINTS", &request_.control,
                       "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
                       "names that "
@@ -47,6 +54,11 @@ class Reconstruct final : public Command {
                  .offering(Offer::file),
              Argument{"--marks", "TABLE", &request_.marks,
                       "Table with the columns point,image,column,row: where images show the surveyed points"}
+                 .offering(Offer::file),
+             Argument{
+                 "--altimeter", "TABLE", &request_.altimeter,
+                 "Table with the columns image,above_ground,sd or image,height,sd, metres: heights of the "
+                 "cameras; alone they give a local frame of true size"}
                  .offering(Offer::file),
              Argument{
                  "--dem", "COARSE", &request_.dem,
@@ -74,18 +86,22 @@ class Reconstruct final : public Command {
                       "Keep finished steps here, so that a killed or changed run does only what is missing"}
                  .offering(Offer::folder),
              format_option(&format_)},
-        .examples = {{"waymark reconstruct images --cameras cameras.json -o site",
-                      "DEM, orthophoto and a job"},
-                     {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
-                      "The map in one command"},
-                     {"waymark reconstruct images --control gcp_list.txt -o site",
-                      "From pictures and surveyed points"},
-                     {"waymark reconstruct images --map orbital_mosaic.tif -o site",
-                      "From pictures and an orthophoto of the site"},
-                     {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem "
-                      "mola.tif --until "
-                      "dem -o site",
-                      "A DEM from poses of COLMAP, started at a coarse one"}},
+        .examples =
+            {{"waymark reconstruct images --cameras cameras.json -o site", "DEM, orthophoto and a job"},
+             {"waymark reconstruct images --cameras cameras.json -o site --map-landmarks site.gpkg",
+              "The map in one command"},
+             {"waymark reconstruct images --control gcp_list.txt -o site",
+              "From pictures and surveyed points"},
+             {"waymark reconstruct images --lens cameras.json --readout-time 0.033 -o site --until poses",
+              "Poses of a rolling shutter with a known lens"},
+             {"waymark reconstruct images --altimeter heights.csv -o site",
+              "In true size by heights above ground, with nothing else"},
+             {"waymark reconstruct images --map orbital_mosaic.tif -o site",
+              "From pictures and an orthophoto of the site"},
+             {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif "
+              "--until "
+              "dem -o site",
+              "A DEM from poses of COLMAP, started at a coarse one"}},
         .result = result_keys()};
   }
 

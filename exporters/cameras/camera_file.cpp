@@ -20,7 +20,8 @@ OrderedJson matrix_json(const Eigen::MatrixXd& m) {
   return rows;
 }
 
-OrderedJson lens_json(const Camera& camera) {
+OrderedJson lens_json(const CameraFileLens& from) {
+  const Camera& camera = from.camera;
   std::size_t used = camera.distortion.size();
   while (used > 0 && camera.distortion[used - 1] == 0) --used;
   OrderedJson lens{{"columns", camera.columns}, {"rows", camera.rows}, {"fx", camera.fx},
@@ -29,6 +30,7 @@ OrderedJson lens_json(const Camera& camera) {
   lens["lens"] = camera.lens == Camera::Lens::fisheye ? "fisheye" : "brown";
   lens["distortion"] = std::vector<double>(camera.distortion.begin(),
                                            camera.distortion.begin() + static_cast<std::ptrdiff_t>(used));
+  if (from.readout_time > 0) lens["readout_time"] = from.readout_time;
   return lens;
 }
 
@@ -78,7 +80,8 @@ std::string camera_file_text(const CameraFileContent& content) {
 
 ColmapModel colmap_model(const CameraFileContent& content, const std::vector<SparsePoint>& points) {
   ColmapModel out;
-  for (std::size_t i = 0; i < content.lenses.size(); ++i) out.cameras += colmap_camera(i, content.lenses[i]);
+  for (std::size_t i = 0; i < content.lenses.size(); ++i)
+    out.cameras += colmap_camera(i, content.lenses[i].camera);
   std::vector<std::string> marks(content.images.size());
   std::vector<std::size_t> counts(content.images.size(), 0);
   for (std::size_t p = 0; p < points.size(); ++p) {

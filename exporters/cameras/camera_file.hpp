@@ -18,10 +18,16 @@ struct CameraFileImage {
   std::string taken_utc = {};  ///< ISO 8601; empty: unknown
 };
 
+/// Lens of a camera file.
+struct CameraFileLens {
+  Camera camera = {};
+  double readout_time = 0;  ///< s from the first row to the last: a rolling shutter; 0: global
+};
+
 /// Content of a camera file.
 struct CameraFileContent {
   std::optional<std::string> crs = {};  ///< of axes `grid`; `std::nullopt`: `arbitrary`
-  std::vector<Camera> lenses = {};
+  std::vector<CameraFileLens> lenses = {};
   std::vector<CameraFileImage> images = {};
 };
 

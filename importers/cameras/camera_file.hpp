@@ -42,13 +42,21 @@ struct CameraRecord {
   std::optional<Sun> sun = {};
   std::optional<Eigen::Vector3d> towards_sun = {};  ///< in the world's axes, any length
   std::optional<Degrees> image_sun_angle = {};
-  std::string taken_utc = {};
+  std::string taken_utc = {};  ///< ISO 8601, to the millisecond if the file has them
+  double readout_time = 0;     ///< s from the first row to the last: a rolling shutter; 0: global
+};
+
+/// A lens that a camera file lists apart from its images.
+struct LensRecord {
+  Camera camera = {};
+  double readout_time = 0;  ///< s from the first row to the last: a rolling shutter; 0: global
 };
 
 struct CameraFile {
   CameraWorld world;
   std::vector<CameraRecord> images;
   std::vector<std::string> warnings;
+  std::vector<LensRecord> lenses = {};  ///< those of no image as well
 };
 
 /// A camera file and the input needed to read it.

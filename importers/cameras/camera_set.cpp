@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "importers/cameras/camera_file.hpp"
+#include "importers/cameras/interior_orientation.hpp"
 #include "importers/cameras/place_cameras.hpp"
 #include "importers/json_value.hpp"
 
@@ -63,6 +64,21 @@ std::size_t common_end(const std::filesystem::path& name, const std::filesystem:
   return same;
 }
 
+// Returns the entry with most path components in common; null if two agree equally.
+template <class Entry>
+const Entry* best_match(const std::vector<Entry>& all, const std::string& image_file) {
+  const Entry* best = nullptr;
+  std::size_t best_same = 0;
+  for (const Entry& image : all) {
+    const std::size_t same = common_end(image.image, image_file);
+    if (same == best_same) best = nullptr;
+    if (same <= best_same) continue;
+    best_same = same;
+    best = &image;
+  }
+  return best;
+}
+
 }  // namespace
 
 std::vector<std::string> camera_formats() {
@@ -85,33 +101,43 @@ CameraSet import_cameras(const std::string& path, const std::string& format, con
   }
 }
 
-std::vector<Camera> import_lenses(const std::string& path) {
+KnownLenses import_lenses(const std::string& path) {
   const CameraSource source{.path = path, .head = head_of_source(path), .interior = {}};
-  std::vector<Camera> lenses;
-  for (const CameraRecord& image : recognised(source).read(source).images) {
-    if (!image.camera || image.camera->columns <= 0) continue;
-    Camera camera = *image.camera;
+  KnownLenses known;
+  const auto add = [&](Camera camera, double readout_time) {
     if (std::isnan(camera.cx)) camera.cx = double(camera.columns - 1) / 2;
     if (std::isnan(camera.cy)) camera.cy = double(camera.rows - 1) / 2;
-    if (std::ranges::find(lenses, camera) == lenses.end()) lenses.push_back(camera);
+    const KnownLens lens{.camera = camera, .readout_time = readout_time};
+    const auto at = std::ranges::find(known.lenses, lens) - known.lenses.begin();
+    if (at == std::ssize(known.lenses)) known.lenses.push_back(lens);
+    return static_cast<std::size_t>(at);
+  };
+  const auto format =
+      std::ranges::find_if(formats(), [&](const CameraFormat& f) { return f.recognises(source); });
+  if (format == formats().end()) {
+    for (const auto& [name, camera] : read_interior(path)) add(camera, 0);
+    return known;
   }
-  if (lenses.empty())
+  const CameraFile file = format->read(source);
+  for (const CameraRecord& image : file.images) {
+    KnownLenses::Entry& entry = known.images.emplace_back();
+    entry.image = image.image;
+    entry.taken_utc = image.taken_utc;
+    if (image.camera && image.camera->columns > 0) entry.lens = add(*image.camera, image.readout_time);
+  }
+  for (const LensRecord& lens : file.lenses) add(lens.camera, lens.readout_time);
+  if (known.lenses.empty())
     throw Error(ErrorCode::input, "the camera file has no lens with its image size", path,
                 "name a camera file of the same camera, e.g. cameras.json of an earlier reconstruction");
-  return lenses;
+  return known;
+}
+
+const KnownLenses::Entry* find_entry(const KnownLenses& known, const std::string& image_file) {
+  return best_match(known.images, image_file);
 }
 
 const ImageCamera* find_camera(const CameraSet& set, const std::string& image_file) {
-  const ImageCamera* best = nullptr;
-  std::size_t best_same = 0;
-  for (const ImageCamera& image : set.images) {
-    const std::size_t same = common_end(image.image, image_file);
-    if (same == best_same) best = nullptr;
-    if (same <= best_same) continue;
-    best_same = same;
-    best = &image;
-  }
-  return best;
+  return best_match(set.images, image_file);
 }
 
 }  // namespace waymark::importers

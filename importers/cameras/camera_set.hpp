@@ -57,9 +57,32 @@ std::vector<std::string> camera_formats();
 /// - a frame without scale and without a similarity.
 CameraSet import_cameras(const std::string& path, const std::string& format, const CameraImport& import);
 
-/// Returns the distinct lenses of a camera file in its order, for images of the same cameras. Poses and their
-/// frame do not matter. Throws Error{input} for a file without lenses.
-std::vector<Camera> import_lenses(const std::string& path);
+/// A lens for images of the same camera.
+struct KnownLens {
+  Camera camera = {};
+  double readout_time = 0;  ///< s from the first row to the last: a rolling shutter; 0: global or unknown
+
+  friend bool operator==(const KnownLens&, const KnownLens&) = default;
+};
+
+/// Lenses of a camera file, and what it says of images beside their poses.
+struct KnownLenses {
+  struct Entry {
+    std::string image = {};                ///< as the file names it, folders included
+    std::optional<std::size_t> lens = {};  ///< index into `lenses`
+    std::string taken_utc = {};            ///< ISO 8601; empty: unknown
+  };
+  std::vector<KnownLens> lenses = {};  ///< distinct ones, in the order of the file
+  std::vector<Entry> images = {};      ///< may be none, and may name images that are not there
+};
+
+/// Reads the lenses of a camera file in any format, or of a file of interior orientations (OpenDroneMap's
+/// cameras.json, Orthority's YAML). Poses and their frame do not matter, and images may be absent. Throws
+/// Error{input} for a file without lenses.
+KnownLenses import_lenses(const std::string& path);
+
+/// Returns the entry of an image, as find_camera() does.
+const KnownLenses::Entry* find_entry(const KnownLenses& known, const std::string& image_file);
 
 /// Returns the entry with the most path components, counted from the end, in common with an image file; the
 /// last one may lack its extension. Null if there is none, or if two agree equally.

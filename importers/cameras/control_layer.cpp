@@ -11,7 +11,7 @@
 
 #include "core/lower_case.hpp"
 #include "importers/cameras/ground_control.hpp"
-#include "importers/tables/table.hpp"
+#include "importers/tables/named_cells.hpp"
 #include "importers/tables/table_number.hpp"
 
 #include "core/error.hpp"
@@ -19,46 +19,7 @@
 namespace waymark::importers {
 namespace {
 
-/// Cells of a table by the names of its columns.
-class NamedCells {
- public:
-  explicit NamedCells(const std::string& path) : table_(open_table(path, TableFormat::by_name, "", "")) {}
-
-  const TableHeader& header() const { return table_->header(); }
-  bool next() { return table_->next(row_); }
-  std::string location() const { return table_->row_location(row_); }
-
-  std::optional<std::size_t> find(std::initializer_list<std::string_view> names) const {
-    for (const std::string_view name : names)
-      for (std::size_t i = 0; i < header().columns.size(); ++i)
-        if (lower_case(header().columns[i]) == name) return i;
-    return {};
-  }
-  std::size_t need(const char* what, std::initializer_list<std::string_view> names, const char* hint) const {
-    if (const auto found = find(names)) return *found;
-    throw Error(ErrorCode::input, fmt::format("the table has no column '{}'", what), header().path,
-                fmt::format("{}; it has: {}", hint, fmt::join(header().columns, ", ")));
-  }
-  const std::string& text(std::size_t column) const { return row_.cells[column]; }
-  double number(std::size_t column) const {
-    if (const auto value = to_real(text(column), header().decimal_comma)) return *value;
-    throw Error(ErrorCode::input, fmt::format("'{}' is not a number", text(column)),
-                fmt::format("{}, column {}", location(), header().columns[column]),
-                "every point and mark needs its coordinates");
-  }
-
- private:
-  std::unique_ptr<TableSource> table_;
-  TableRow row_;
-};
-
-double deviation(const NamedCells& cells, std::optional<std::size_t> column, double otherwise) {
-  if (!column || is_missing(cells.text(*column))) return otherwise;
-  const double sd = cells.number(*column);
-  if (sd > 0) return sd;
-  throw Error(ErrorCode::input, fmt::format("the standard deviation {} is not above 0", sd), cells.location(),
-              "leave the cell empty if it is unknown");
-}
+constexpr const char* kNeeded = "every point and mark needs its coordinates";
 
 bool is_true(std::string_view cell) {
   const std::string text = lower_case(cell);
@@ -89,11 +50,11 @@ GroundControl read_points(const std::string& path) {
       throw Error(ErrorCode::input, fmt::format("two control points have the name '{}'", point.name),
                   cells.location(), "give each point its own name");
     const double height =
-        is_missing(cells.text(z)) ? std::numeric_limits<double>::quiet_NaN() : cells.number(z);
-    point.position = {cells.number(x), cells.number(y), height};
+        is_missing(cells.text(z)) ? std::numeric_limits<double>::quiet_NaN() : cells.number(z, kNeeded);
+    point.position = {cells.number(x, kNeeded), cells.number(y, kNeeded), height};
     const GroundControlPoint usual;
-    point.sd = {deviation(cells, sd_x, usual.sd.x()), deviation(cells, sd_y, usual.sd.y()),
-                deviation(cells, sd_z, usual.sd.z())};
+    point.sd = {cells.deviation(sd_x, usual.sd.x()), cells.deviation(sd_y, usual.sd.y()),
+                cells.deviation(sd_z, usual.sd.z())};
     point.check = is_check_name(point.name) || (check && is_true(cells.text(*check)));
     all.points.push_back(std::move(point));
   }
@@ -124,8 +85,8 @@ GroundControl read_control_layer(const std::string& points, const std::string& m
           fmt::format("the point '{}' has two marks in the image '{}'", point->name, cells.text(image)),
           cells.location(), "remove one");
     point->marks.push_back({.image = cells.text(image),
-                            .pixel = {cells.number(column), cells.number(row)},
-                            .sd = deviation(cells, sd, GroundControlMark{}.sd)});
+                            .pixel = {cells.number(column, kNeeded), cells.number(row, kNeeded)},
+                            .sd = cells.deviation(sd, GroundControlMark{}.sd)});
   }
   return all;
 }

@@ -132,7 +132,7 @@ std::map<std::string, Camera> from_json(const std::string& path) {
 }  // namespace
 
 Camera camera_from_json(const JsonValue& json) {
-  json.expect_only({"columns", "rows", "fx", "fy", "cx", "cy", "skew", "lens", "distortion"});
+  json.expect_only({"columns", "rows", "fx", "fy", "cx", "cy", "skew", "lens", "distortion", "readout_time"});
   Camera camera;
   camera.columns = json["columns"].integer();
   camera.rows = json["rows"].integer();
@@ -157,6 +157,14 @@ Camera camera_from_json(const JsonValue& json) {
         "brown: k1 k2 p1 p2 k3 k4 k5 k6; fisheye: k1 k2 k3 k4");
   std::copy(numbers.begin(), numbers.end(), camera.distortion.begin());
   return camera;
+}
+
+double readout_time_from_json(const JsonValue& json) {
+  const double time = json.number("readout_time", 0);
+  if (!(time >= 0 && time <= 10))
+    json["readout_time"].refuse(fmt::format("a readout time of {} s", time),
+                                "seconds from the first row to the last, 0 (global shutter) to 10");
+  return time;
 }
 
 Camera camera_from_opensfm(const JsonValue& json) {

@@ -9,6 +9,10 @@ namespace waymark::importers {
 /// Reads a lens of Waymark's own camera file; docs/reference/camera_file.md.
 Camera camera_from_json(const JsonValue& json);
 
+/// Reads the time from the first row to the last of a lens of Waymark's own camera file, seconds; 0 if it has
+/// none.
+double readout_time_from_json(const JsonValue& json);
+
 /// Reads a lens of OpenSfM and OpenDroneMap. Normalised image coordinates are pixels over max(width, height)
 /// from the middle of the image: u = (f x + c_x) max(w, h) + w / 2 - 0.5, where (0, 0) is the centre of the
 /// first pixel.

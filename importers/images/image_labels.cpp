@@ -84,6 +84,11 @@ TimeTaken time_taken(GDALDataset& dataset, const std::string& time_zone) {
     taken.utc = gps_time(item(dataset, "EXIF_GPSDateStamp"), item(dataset, "EXIF_GPSTimeStamp"));
   if (!taken.utc && !time.empty() && !time_zone.empty()) taken.utc = utc_seconds(time + time_zone);
   if (!taken.utc) taken.local = time;
+  taken.clock = time.empty() ? taken.utc : utc_seconds(time + "Z");
+  double fraction = 0;
+  if (const std::string digits = item(dataset, "EXIF_SubSecTimeOriginal");
+      taken.clock && !time.empty() && !digits.empty() && parse_number("0." + digits, fraction))
+    *taken.clock += fraction;
   return taken;
 }
 

@@ -11,6 +11,9 @@ namespace waymark::importers {
 struct TimeTaken {
   std::optional<double> utc;  ///< seconds since 1970-01-01
   std::string local;          ///< time without offset, "2019-04-11T11:01:21"; empty: none
+  /// Seconds since 1970-01-01 of the camera's own clock, with EXIF's fraction of a second; the offset is
+  /// unknown.
+  std::optional<double> clock = {};
 };
 
 /// Reads the time of exposure. EXIF: original time and its offset, else GPS time (UTC). `time_zone`

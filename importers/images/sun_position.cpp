@@ -144,4 +144,11 @@ std::string utc_text(double unix_seconds) {
                      rest / 60 % 60, rest % 60);
 }
 
+std::string precise_utc_text(double unix_seconds) {
+  const auto milliseconds = std::llround(unix_seconds * 1e3);
+  const std::string whole = utc_text(std::floor(static_cast<double>(milliseconds) / 1e3));
+  const auto rest = ((milliseconds % 1000) + 1000) % 1000;
+  return rest == 0 ? whole : fmt::format("{}.{:03}Z", whole.substr(0, whole.size() - 1), rest);
+}
+
 }  // namespace waymark::importers

@@ -27,5 +27,7 @@ std::optional<double> utc_seconds(std::string_view text);
 
 /// Returns the time as "2019-04-11T03:01:21Z".
 std::string utc_text(double unix_seconds);
+/// Returns the time as "2019-04-11T03:01:21.250Z", without a fraction if it is whole.
+std::string precise_utc_text(double unix_seconds);
 
 }  // namespace waymark::importers

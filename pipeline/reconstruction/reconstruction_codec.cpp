@@ -33,7 +33,7 @@ constexpr auto kMatches = [](auto& io, auto& value) {
   io.list(value.pairs, [&](auto& pair) { kPair(io, pair); });
   io.list(value.lenses, [&](auto& lens) {
     kCamera(io, lens.camera);
-    io(lens.focal_sd);
+    io(lens.focal_sd, lens.readout_time);
   });
   // std::vector<bool> has no addressable items.
   std::vector<std::uint8_t> voted(value.voted.begin(), value.voted.end());
@@ -47,11 +47,14 @@ constexpr auto kReconstruction = [](auto& io, auto& scene) {
     kCamera(io, lens.camera);
     io.list(lens.parameters, [&](auto& name) { io(name); });
     io.matrix(lens.covariance);
+    io(lens.readout_time);
   });
   io.list(scene.images, [&](auto& image) {
     io(image.name, image.lens, image.component);
     io.maybe(image.world_from_camera, [&](auto& pose) { io.matrix(pose.matrix()); });
     io.maybe(image.covariance, [&](auto& covariance) { io.matrix(covariance); });
+    io.maybe(image.time, [&](auto& time) { io(time); });
+    io.maybe(image.motion, [&](auto& motion) { io.matrix(motion.shift), io.matrix(motion.turn); });
   });
   io.list(scene.points, [&](auto& point) {
     io.list(point.marks, [&](auto& mark) {

@@ -958,7 +958,7 @@ def read_map(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
 
-def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., control: _Path = ..., marks: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
+def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., readout_time: float = ..., control: _Path = ..., marks: _Path = ..., altimeter: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 
     until: "poses", "dem" or "ortho". options: cameras, lens, control, marks, dem, crs, cell, map, threads.
@@ -967,8 +967,10 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
     Keywords:
         cameras: camera file with the poses, which names the images if none are given; empty: they are solved
         lens: camera file whose lens is kept fixed; empty: self-calibration
+        readout_time: s from the first row to the last, where `lens` states none
         control: surveyed points; empty: none
         marks: table of their marks; empty: `control` is a gcp_list.txt
+        altimeter: table of heights of images; empty: none
         map_image: orthophoto of the site, the reference if there is no better; empty: none
         dem: coarse DEM, start of heights, and the reference if there is no other; empty: none
         crs: of the map; empty: that of camera file or references, else a UTM zone

@@ -106,6 +106,37 @@ void add_lines(std::vector<Shot>& shots, const Scenario& scenario, const Flight&
     }
 }
 
+/// Dust below rockets at an altitude: from nothing at dust_altitude to the full depth on the ground.
+DustCloud dust_at(const Flight& f, const DescentState& state, double altitude, const Eigen::Vector2d& place,
+                  std::uint64_t seed) {
+  const double nearness = 1 - altitude / f.dust_altitude;
+  if (!(f.dust > 0 && nearness > 0) || state.phase == DescentPhase::parachute) return {};
+  return {
+      .depth = f.dust * nearness * nearness, .radius = 1.5 * f.dust_altitude, .centre = place, .seed = seed};
+}
+
+/// A shield that was released at the start: it falls from 10 m below the lander's first position at a speed
+/// that tends to twice the lander's, carried by the wind at half its speed, and tumbles once in 8 s by 20
+/// degrees.
+FallingShield shield_at(const Flight& f, const std::vector<DescentState>& states, const DescentState& state,
+                        const SiteModel& ground) {
+  if (!(f.heat_shield > 0)) return {};
+  const DescentState& first = states.front();
+  const double gravity = f.landing.gravity, terminal = 2 * f.landing.parachute_speed;
+  const double start = f.heat_shield_speed - first.body.velocity.z();
+  // Quadratic drag with the terminal speed: v' = g (1 - (v / terminal)^2), integrated exactly.
+  const double a = std::atanh(std::min(0.999, start / terminal)), k = gravity / terminal;
+  const double fallen = terminal / k * std::log(std::cosh(a + k * state.t) / std::cosh(a));
+  Eigen::Vector3d centre = first.body.position - Eigen::Vector3d(0, 0, 10 + fallen);
+  centre.head<2>() += 0.5 * state.t * first.body.velocity.head<2>();
+  if (centre.z() < 0) return {};  // on the ground, out of the lander's way
+  const double turn = 2 * std::numbers::pi * state.t / 8;
+  const Eigen::Vector3d normal(0.34 * std::cos(turn), 0.34 * std::sin(turn), 1);
+  return {.radius = f.heat_shield / 2,
+          .centre = centre + Eigen::Vector3d(ground.east, ground.north, ground.up),
+          .normal = normal.normalized()};
+}
+
 void add_landing(std::vector<Shot>& shots, const Scenario& scenario, const Flight& f, Random& errors) {
   if (f.lines != 1)
     throw Error(ErrorCode::usage, fmt::format("the landing {} has {} lines", f.name, f.lines), "flights",
@@ -116,13 +147,19 @@ void add_landing(std::vector<Shot>& shots, const Scenario& scenario, const Fligh
       named_seed(static_cast<std::uint64_t>(scenario.seed), "flight " + f.name));
   for (std::int64_t i = 0; i < f.images; ++i) {
     const double along = f.images > 1 ? double(i) / double(f.images - 1) : 0;
-    const RigidBody& body =
-        states[static_cast<std::size_t>(std::lround(along * double(states.size() - 1)))].body;
+    const DescentState& state =
+        states[static_cast<std::size_t>(std::lround(along * double(states.size() - 1)))];
+    const RigidBody& body = state.body;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
     pose.linear() = body.attitude * attitude({1, 0}, to_radians(f.tilt).value);
     pose.translation() = body.position + Eigen::Vector3d(ground.east, ground.north, ground.up);
     add_shot(shots, scenario, fmt::format("{}_{:04}.png", f.name, i + 1), pose,
              {.velocity = body.velocity, .spin = body.attitude * body.spin}, errors);
+    Shot& shot = shots.back();
+    shot.time = state.t;
+    shot.dust = dust_at(f, state, body.position.z(), pose.translation().head<2>(),
+                        named_seed(static_cast<std::uint64_t>(scenario.seed), "dust " + shot.name));
+    shot.shield = shield_at(f, states, state, ground);
   }
 }
 
@@ -135,6 +172,13 @@ std::vector<Shot> plan_shots(const Scenario& scenario) {
     (f.path == "landing" ? add_landing : add_lines)(shots, scenario, f, errors);
   }
   return shots;
+}
+
+View view_of(const Shot& shot) {
+  View view = camera_view(shot.view, shot.motion);
+  view.dust = shot.dust;
+  view.shield = shot.shield;
+  return view;
 }
 
 SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots) {

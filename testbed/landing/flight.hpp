@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 #include "testbed/scenario.hpp"
@@ -10,11 +11,17 @@ struct Shot {
   std::string name;                       ///< file name
   PosedCamera view;                       ///< true pose, with the covariance of the reported pose
   CameraMotion motion = {};               ///< while the shutter is open; zero along lines
+  std::optional<double> time = {};        ///< s from the start of a landing
+  DustCloud dust = {};                    ///< below a lander
+  FallingShield shield = {};              ///< below a lander
   Pose<GridFrame, CameraFrame> reported;  ///< reported pose, with the errors of the scenario
 };
 
 /// Returns every image of every flight, in the order of the file.
 std::vector<Shot> plan_shots(const Scenario& scenario);
+
+/// Returns what a camera sees of a shot: its pose, motion, dust and heat shield.
+View view_of(const Shot& shot);
 
 /// Returns the site with width and height filled in where they are 0: the footprints of all images on level
 /// ground at its mean height, plus a tenth. Throws Error{usage} for a camera that sees the sky.

@@ -180,6 +180,50 @@ TEST(Render, MotionBlursAsTheMeanOfItsInstants) {
   EXPECT_LT(off, 0.25 * unlike);
 }
 
+// Through dust of optical depth 1 the contrast of the ground falls to 1 / e.
+TEST(Render, DustHidesTheGround) {
+  const Scene scene = with_rock(RockShape::ellipsoid, 4, 2);
+  const Exposure exposure = plain_light(60, 40);
+  View view = camera_view(looking_down(70));
+  const Pixels clear = render_view(scene, view, exposure, 1);
+  view.dust = {.depth = 1, .radius = 1e6, .centre = {0, 0}, .seed = 3};
+  const Pixels dusty = render_view(scene, view, exposure, 1);
+  const auto contrast = [](const Pixels& image) {
+    float low = 1, high = 0;
+    for (std::int64_t j = 80; j < 120; ++j)
+      for (std::int64_t i = 80; i < 120; ++i)
+        low = std::min(low, image(i, j)), high = std::max(high, image(i, j));
+    return double(high - low);
+  };
+  // Over such a radius the billows are one value for the image.
+  const double depth = dust_depth(view.dust, 0, 0);
+  EXPECT_GT(depth, 0.3);
+  EXPECT_NEAR(contrast(dusty) / contrast(clear), std::exp(-depth), 0.05);
+  EXPECT_EQ(dust_depth({}, 0, 0), 0);
+}
+
+// A disc of 2 m radius 35 m below a camera at 70 m covers a known number of pixels, and casts a shadow.
+TEST(Render, AShieldCoversItsDisc) {
+  const Scene scene = make_scene(bare_ground(), 1);
+  const PosedCamera camera = looking_down(70);
+  const Exposure exposure = plain_light(60, 75);  // the shadow falls 9 m beside the nadir
+  View view = camera_view(camera);
+  const Pixels clear = render_view(scene, view, exposure, 1);
+  view.shield = {.radius = 2, .centre = camera.centre().xyz - Eigen::Vector3d(0, 0, 35)};
+  const Pixels shown = render_view(scene, view, exposure, 1);
+  double brighter = 0, darker = 0;
+  for (std::int64_t j = 0; j < shown.rows(); ++j)
+    for (std::int64_t i = 0; i < shown.columns(); ++i) {
+      const double change = double(shown(i, j)) / double(clear(i, j));
+      if (change > 1.3) ++brighter;
+      if (change < 0.7) ++darker;
+    }
+  const double pixels = std::numbers::pi * std::pow(2 * camera.camera.fx / 35, 2);
+  EXPECT_NEAR(brighter, pixels, 0.05 * pixels);
+  const double shadow = std::numbers::pi * std::pow(2 * camera.camera.fx / 70, 2);
+  EXPECT_NEAR(darker, shadow, 0.1 * shadow);
+}
+
 TEST(Render, PastTheGroundIsNoData) {
   const Scene scene = make_scene(bare_ground(), 1);
   const Pixels image = render_view(scene, map_view(scene, 0.5, 100, 20), plain_light(60, 40), 1);

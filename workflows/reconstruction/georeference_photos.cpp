@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "pipeline/reconstruction/adjustment/georeference.hpp"
+#include "pipeline/reconstruction/adjustment/local_frame.hpp"
 #include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
 #include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
@@ -60,6 +61,21 @@ PhotoReferences references_of(const PosedPhotos& posed, const Photos& photos, co
   for (const pipeline::ObservedHeight& h : priors.heights)
     if (is_posed(h.image)) out.seen.heights.push_back(h);
   return out;
+}
+
+// Covariances are scaled by the sigma0 of all observations, which is that of the many marks: deviations of an
+// altimeter are stated in its unit.
+void add_altimeter(const PosedPhotos& posed, const PhotoAltimeter& altimeter, pipeline::Observations& seen) {
+  const double sigma0 = posed.scene.sigma0 > 0 ? posed.scene.sigma0 : 1;
+  const auto is_posed = [&](std::size_t i) { return posed.scene.images[i].world_from_camera.has_value(); };
+  for (pipeline::ObservedHeightAboveGround h : altimeter.above_ground) {
+    h.sd /= sigma0;
+    if (is_posed(h.image)) seen.heights_above_ground.push_back(h);
+  }
+  for (pipeline::ObservedHeight h : altimeter.heights) {
+    h.sd /= sigma0;
+    if (is_posed(h.image)) seen.heights.push_back(h);
+  }
 }
 
 std::size_t cameras_looking_up(const pipeline::Reconstruction& scene) {
@@ -152,14 +168,55 @@ void georeference_on_dem(PosedPhotos& posed, pipeline::Observations seen, const 
       100 * scale_sd));
 }
 
+// Gives images without another reference a frame of true size by their heights.
+void georeference_by_heights(PosedPhotos& posed, const pipeline::Observations& seen) {
+  std::size_t component = 0;
+  for (const pipeline::AdjustedImage& image : posed.scene.images)
+    if (image.world_from_camera) component = image.component;
+  const pipeline::LocalFrameResult placed = pipeline::local_frame(posed.scene, seen, component);
+  if (!placed.found) {
+    posed.messages.push_back("the frame is arbitrary: " + placed.message +
+                             "; control points, GPS positions or other heights give it");
+    return;
+  }
+  pipeline::Reconstruction moved = posed.scene;
+  pipeline::transform(moved, component, placed.found->local_from_frame);
+  moved.frame = pipeline::ReconstructionFrame::metric;
+  const pipeline::AdjustmentResult adjusted =
+      pipeline::adjust(moved, seen, {.free_lens_parameters = admitted_parameters(posed)});
+  constexpr int kWithoutScale = 6;
+  if (adjusted.free_datum > kWithoutScale) {
+    posed.messages.push_back(
+        "the frame is arbitrary: no height could be compared with the ground below the camera");
+    return;
+  }
+  posed.scene = std::move(moved);
+  posed.crs = "local";
+  posed.messages.push_back(
+      fmt::format("a local frame of true size by {} heights, scale +- {:.2g} %: its position and direction "
+                  "are conventional, {}",
+                  placed.found->readings, 100 * placed.found->scale_sd,
+                  seen.ups.empty() ? "and it is level with the mean plane of the terrain"
+                                   : "and it is level by the gimbals"));
+  for (const pipeline::ObservationResult& one : adjusted.others)
+    if (!one.used && one.kind.starts_with("height") && posed.scene.images[one.image].world_from_camera)
+      posed.messages.push_back(
+          fmt::format("the {} of image {} contradicts the others, or the ground below it is not "
+                      "known; it was left out",
+                      one.kind, posed.scene.images[one.image].name));
+}
+
 }  // namespace
 
-void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoControl& control,
+void georeference_photos(PosedPhotos& posed, const Photos& photos, const SurveyedReferences& surveyed,
                          const pipeline::CalibratedAdjustment& calibrated, const PosePhotosRequest& request,
                          const Callbacks& callbacks) {
+  const PhotoControl& control = surveyed.control;
   for (const std::string& warning : control.warnings) callbacks.warning(warning);
+  for (const std::string& warning : surveyed.altimeter.warnings) callbacks.warning(warning);
   PhotoReferences references = references_of(posed, photos, control, request.crs, posed.messages);
   references.seen.lenses = calibrated.priors;
+  add_altimeter(posed, surveyed.altimeter, references.seen);
   pipeline::Reconstruction moved = posed.scene;
   const pipeline::Georeferenced result =
       pipeline::georeference(moved, references.seen, {.free_lens_parameters = admitted_parameters(posed)});
@@ -168,6 +225,9 @@ void georeference_photos(PosedPhotos& posed, const Photos& photos, const PhotoCo
       return place_photos_in_image(posed, photos, references.seen, admitted_parameters(posed), request);
     if (!request.dem.empty() && control.points.empty() && references.seen.positions.size() < 3)
       return georeference_on_dem(posed, references.seen, request);
+    const bool heights = !references.seen.heights.empty() || !references.seen.heights_above_ground.empty();
+    if (heights && control.points.empty() && references.seen.positions.empty())
+      return georeference_by_heights(posed, references.seen);
     for (const std::string& message : result.messages) posed.messages.push_back(message);
     return;
   }

@@ -93,23 +93,11 @@ void check_exchange(const importers::GroundControl& found, const Crs& crs, const
                 file, "easting or longitude comes first, then northing or latitude");
 }
 
-// Index of the picture that a mark names: by its name, else its name without folders.
-std::optional<std::size_t> picture_of(const Photos& photos, const std::string& name) {
-  const auto index = [&](auto&& same) -> std::optional<std::size_t> {
-    const auto found = std::ranges::find_if(photos.photos, same);
-    if (found == photos.photos.end()) return std::nullopt;
-    return static_cast<std::size_t>(found - photos.photos.begin());
-  };
-  if (const auto exact = index([&](const Photo& p) { return p.name == name; })) return exact;
-  const auto base = std::filesystem::path(name).filename();
-  return index([&](const Photo& p) { return std::filesystem::path(p.name).filename() == base; });
-}
-
 std::vector<pipeline::Mark> marks_in(const Photos& photos, const importers::GroundControlPoint& point,
                                      std::set<std::string>& unknown, std::vector<std::string>& warnings) {
   std::vector<pipeline::Mark> marks;
   for (const importers::GroundControlMark& mark : point.marks) {
-    const auto image = picture_of(photos, mark.image);
+    const auto image = picture_named(photos, mark.image);
     if (!image) {
       unknown.insert(mark.image);
       continue;
@@ -130,6 +118,17 @@ std::vector<pipeline::Mark> marks_in(const Photos& photos, const importers::Grou
 }
 
 }  // namespace
+
+std::optional<std::size_t> picture_named(const Photos& photos, const std::string& name) {
+  const auto index = [&](auto&& same) -> std::optional<std::size_t> {
+    const auto found = std::ranges::find_if(photos.photos, same);
+    if (found == photos.photos.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - photos.photos.begin());
+  };
+  if (const auto exact = index([&](const Photo& p) { return p.name == name; })) return exact;
+  const auto base = std::filesystem::path(name).filename();
+  return index([&](const Photo& p) { return std::filesystem::path(p.name).filename() == base; });
+}
 
 PhotoControl photo_control(const PhotoControlRequest& request, const Photos& photos) {
   const importers::GroundControl found = importers::read_ground_control(request.points, request.marks);

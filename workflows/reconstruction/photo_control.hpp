@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <optional>
 #include <string>
 #include <vector>
 #include "pipeline/reconstruction/adjustment/observations.hpp"
@@ -27,6 +28,9 @@ struct PhotoControl {
 /// - Throws Error{input} for coordinates that fit the positions of the pictures only if they are exchanged.
 /// - Throws Error{usage} for a map in degrees.
 PhotoControl photo_control(const PhotoControlRequest& request, const Photos& photos);
+
+/// Returns the index of the picture of a name: of its whole name, else of its name without folders.
+std::optional<std::size_t> picture_named(const Photos& photos, const std::string& name);
 
 /// Returns why the positions of the pictures cannot be used beside the surveyed points, which they must be
 /// within a degree of; empty if they can, or if there are none.

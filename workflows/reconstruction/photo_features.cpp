@@ -89,7 +89,7 @@ std::vector<pipeline::ImageToMatch> images_to_match(const Photos& photos) {
   std::vector<pipeline::ImageToMatch> images;
   std::optional<importers::PhotoPosition> origin;
   for (const Photo& photo : photos.photos) {
-    pipeline::ImageToMatch image{.name = photo.name, .lens = photo.lens};
+    pipeline::ImageToMatch image{.name = photo.name, .lens = photo.lens, .time = photo.time};
     if (const auto& at = photo.metadata.position) {
       if (!origin) origin = at;
       const double metres = 111'000, shrink = std::cos(at->lat * std::numbers::pi / 180);

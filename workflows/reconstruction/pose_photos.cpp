@@ -115,9 +115,10 @@ std::vector<UnusedPhoto> failures_of(const Photos& photos, const PhotoFeatures& 
 }
 
 // Self-calibration and georeference of the largest component.
-PosedPhotos place_poses(const PosePhotosRequest& request, const Photos& photos, const PhotoControl& control,
-                        const PhotoFeatures& found, const pipeline::ImageMatches& matches,
-                        pipeline::SolvedPoses solved, const Callbacks& callbacks) {
+PosedPhotos place_poses(const PosePhotosRequest& request, const Photos& photos,
+                        const SurveyedReferences& surveyed, const PhotoFeatures& found,
+                        const pipeline::ImageMatches& matches, pipeline::SolvedPoses solved,
+                        const Callbacks& callbacks) {
   PosedPhotos out;
   for (const pipeline::SolvedComponent& component : solved.components)
     out.components.push_back(component.posed);
@@ -133,7 +134,7 @@ PosedPhotos place_poses(const PosePhotosRequest& request, const Photos& photos, 
       out.messages.push_back(fmt::format("lens {}: {} stays at {:.6g}: {}", step.lens + 1, step.parameter,
                                          step.value, step.reason));
   pipeline::ProgressMeter meter(callbacks.progress, "georeference", 1);
-  georeference_photos(out, photos, control, calibrated, request, callbacks);
+  georeference_photos(out, photos, surveyed, calibrated, request, callbacks);
   meter.add(1);
   meter.finish();
   out.failures = failures_of(photos, found, solved, out.scene);
@@ -146,11 +147,13 @@ PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callb
   std::optional<tbb::global_control> limit;
   if (request.threads > 0)
     limit.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(request.threads));
-  const Photos photos = read_photos({.images = request.images, .lens = request.lens}, callbacks);
-  const PhotoControl control =
-      request.control.empty()
-          ? PhotoControl{}
-          : photo_control({.points = request.control, .marks = request.marks, .crs = request.crs}, photos);
+  const Photos photos = read_photos(
+      {.images = request.images, .lens = request.lens, .readout_time = request.readout_time}, callbacks);
+  SurveyedReferences surveyed;
+  if (!request.control.empty())
+    surveyed.control =
+        photo_control({.points = request.control, .marks = request.marks, .crs = request.crs}, photos);
+  if (!request.altimeter.empty()) surveyed.altimeter = photo_altimeter(request.altimeter, photos);
   const pipeline::KeptResults kept(request.work);
   const PhotoFeatures found = find_photo_features(photos, request.max_pixels, kept, callbacks);
   const std::vector<pipeline::ImageToMatch> images = images_to_match(photos);
@@ -170,7 +173,7 @@ PosedPhotos pose_photos(const PosePhotosRequest& request, const Callbacks& callb
         auto solved = kept.get<pipeline::SolvedPoses>(
             steps.solved, [&] { return solve_photo_poses(images, found, matches, recording); });
         if (solved.components.empty()) refuse_without_poses(photos, found, matches);
-        return place_poses(request, photos, control, found, matches, std::move(solved), recording);
+        return place_poses(request, photos, surveyed, found, matches, std::move(solved), recording);
       },
       warnings);
   for (const std::string& warning : warnings) callbacks.warning(warning);

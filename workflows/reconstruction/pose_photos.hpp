@@ -12,8 +12,10 @@ struct PosePhotosRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders
   std::string folder = {};               ///< for the products
   std::string lens = {};                 ///< camera file whose lens is kept fixed; empty: self-calibration
+  double readout_time = 0;               ///< s from the first row to the last, where `lens` states none
   std::string control = {};              ///< surveyed points; empty: none
   std::string marks = {};                ///< table of their marks; empty: `control` is a gcp_list.txt
+  std::string altimeter = {};            ///< table of heights of images; empty: none
   std::string dem =
       {};  ///< coarse DEM, start of heights, and the reference if there is no other; empty: none
   std::string map_image = {};  ///< orthophoto of the site, the reference if there is no better; empty: none

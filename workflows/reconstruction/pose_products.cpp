@@ -16,7 +16,8 @@ namespace {
 exporters::CameraFileContent camera_content(const PosedPhotos& posed, const Photos& photos) {
   exporters::CameraFileContent content;
   if (!posed.crs.empty()) content.crs = posed.crs;
-  for (const pipeline::AdjustedLens& lens : posed.scene.lenses) content.lenses.push_back(lens.camera);
+  for (const pipeline::AdjustedLens& lens : posed.scene.lenses)
+    content.lenses.push_back({lens.camera, lens.readout_time});
   for (std::size_t i = 0; i < posed.scene.images.size(); ++i) {
     const pipeline::AdjustedImage& image = posed.scene.images[i];
     content.images.push_back({.name = image.name,

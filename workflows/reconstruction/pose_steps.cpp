@@ -20,6 +20,7 @@ std::string key_of_matches(const Photos& photos, const PhotoFeatures& found,
   io.list(images, [&](const pipeline::ImageToMatch& image) {
     io(image.name, image.lens);
     io.maybe(image.position, [&](const Eigen::Vector3d& position) { io.matrix(position); });
+    io.maybe(image.time, [&](const double& time) { io(time); });
   });
   io.list(photos.unused, [&](const UnusedPhoto& photo) { io(photo.name, photo.reason); });
   pipeline::ImageMatches lenses;
@@ -62,15 +63,16 @@ constexpr auto kPosed = [](auto& io, auto& value) {
 
 PoseSteps pose_steps(const PosePhotosRequest& request, const Photos& photos, const PhotoFeatures& found,
                      const std::vector<pipeline::ImageToMatch>& images, const pipeline::KeptResults& kept) {
-  PoseSteps steps{.matches = {.name = "match_images", .item = "all", .version = 1, .depends_on = ""},
-                  .solved = {.name = "solve_poses", .item = "all", .version = 3, .depends_on = ""},
-                  .poses = {.name = "georeference", .item = "all", .version = 1, .depends_on = ""}};
+  PoseSteps steps{.matches = {.name = "match_images", .item = "all", .version = 2, .depends_on = ""},
+                  .solved = {.name = "solve_poses", .item = "all", .version = 4, .depends_on = ""},
+                  .poses = {.name = "georeference", .item = "all", .version = 2, .depends_on = ""}};
   if (!kept.enabled()) return steps;
   steps.matches.depends_on = key_of_matches(photos, found, images);
   steps.solved.depends_on = steps.matches.fingerprint();
   ByteWriter references;
   references(steps.solved.fingerprint());
-  for (const std::string& file : {request.control, request.marks, request.dem, request.map_image})
+  for (const std::string& file :
+       {request.control, request.marks, request.altimeter, request.dem, request.map_image})
     references(hash_of(file));
   references(request.crs);
   steps.poses.depends_on = references.take();

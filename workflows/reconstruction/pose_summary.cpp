@@ -9,6 +9,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
+
 namespace waymark::workflows {
 namespace {
 
@@ -25,6 +27,25 @@ std::string lens_line(const pipeline::AdjustedLens& lens, std::size_t index, std
     text += fmt::format("{} {} +- {:.2g}", k == 0 ? "; adjusted:" : ",", lens.parameters[k], sd);
   }
   return text + (lens.parameters.empty() ? "; kept fixed\n" : "\n");
+}
+
+// Largest motions while the rows of one lens were read out; empty for a global shutter.
+std::string shutter_line(const pipeline::Reconstruction& scene, std::size_t lens) {
+  const double readout = scene.lenses[lens].readout_time;
+  if (!(readout > 0)) return {};
+  std::size_t images = 0, moving = 0;
+  double pixels = 0;
+  for (const pipeline::AdjustedImage& image : scene.images) {
+    if (image.lens != lens || !image.world_from_camera) continue;
+    ++images;
+    if (!image.motion) continue;
+    ++moving;
+    pixels = std::max(pixels, image.motion->turn.norm() * scene.lenses[lens].camera.fx);
+  }
+  return fmt::format("    rolling shutter of {:.3g} ms: the motion of {} of {} images is estimated; {}\n",
+                     1e3 * readout, moving, images,
+                     moving > 0 ? fmt::format("they turn by up to {:.1f} px meanwhile", pixels)
+                                : std::string("without times of exposure it is not modelled"));
 }
 
 double median_position_sd(const pipeline::Reconstruction& scene) {
@@ -61,8 +82,9 @@ std::optional<Eigen::Vector2d> residual_of(const pipeline::Reconstruction& scene
                                            const pipeline::TiePoint& tie, const pipeline::Mark& mark) {
   const pipeline::AdjustedImage& image = scene.images[mark.image];
   if (!tie.position || !image.world_from_camera) return std::nullopt;
-  const auto seen = project(scene.lenses[image.lens].camera,
-                            Point<CameraFrame>{image.world_from_camera->inverse() * *tie.position});
+  const auto seen =
+      project(scene.lenses[image.lens].camera,
+              Point<CameraFrame>{pipeline::pose_of_mark(scene, mark).inverse() * *tie.position});
   if (!seen) return std::nullopt;
   return *seen - mark.pixel;
 }
@@ -114,7 +136,7 @@ std::string pose_summary(const PosedPhotos& posed, const std::vector<exporters::
     const auto images = static_cast<std::size_t>(std::ranges::count_if(
         posed.scene.images,
         [&](const pipeline::AdjustedImage& i) { return i.lens == lens && i.world_from_camera; }));
-    text += lens_line(posed.scene.lenses[lens], lens, images);
+    text += lens_line(posed.scene.lenses[lens], lens, images) + shutter_line(posed.scene, lens);
   }
   if (!posed.crs.empty()) {
     text += fmt::format("  frame: {}; median sd of the centres {:.3f} m", posed.crs,

@@ -67,8 +67,10 @@ std::string camera_file(const PosedImages& posed) {
   content.crs = text_of_crs(posed.crs);
   for (const ImageHandle& handle : posed.images) {
     const ImageInfo& info = handle->info();
-    const auto lens = std::ranges::find(content.lenses, info.view->camera) - content.lenses.begin();
-    if (lens == std::ssize(content.lenses)) content.lenses.push_back(info.view->camera);
+    const auto lens =
+        std::ranges::find(content.lenses, info.view->camera, &exporters::CameraFileLens::camera) -
+        content.lenses.begin();
+    if (lens == std::ssize(content.lenses)) content.lenses.push_back({info.view->camera});
     exporters::CameraFileImage& image = content.images.emplace_back();
     image.name = info.name;
     image.lens = static_cast<std::size_t>(lens);

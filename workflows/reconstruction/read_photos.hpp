@@ -17,7 +17,8 @@ struct Photo {
   importers::PhotoMetadata metadata = {};
   double saturated = 0;  ///< brightness of saturated pixels; 0: unknown
   std::string taken_utc = {};
-  std::size_t lens = 0;  ///< index into `Photos::lenses`
+  std::optional<double> time = {};  ///< of exposure, s since an instant common to all pictures of a camera
+  std::size_t lens = 0;             ///< index into `Photos::lenses`
 };
 
 struct UnusedPhoto {
@@ -32,11 +33,17 @@ struct Photos {
 
 struct PhotosRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders
-  std::string lens = {};                 ///< camera file whose lens of the same image size holds; empty: none
+  /// Camera file whose lens holds: of an image that it names, else of the same image size; empty: none.
+  std::string lens = {};
+  double readout_time = 0;  ///< s from the first row to the last, where `lens` states none; 0: global shutter
   std::size_t max_images = 400;  ///< images taken; more are thinned evenly in the order of their names
 };
 
 /// Lists pictures and reads their metadata. Files that are no pictures are passed over.
+/// - The camera file may name other images, or none: what it says of these pictures is used, and what does
+/// not
+///   apply is stated in a summary or a warning.
+/// - Times are those of EXIF, else of the camera file.
 /// Throws Error{input} without two usable pictures.
 Photos read_photos(const PhotosRequest& request, const Callbacks& callbacks = {});
 

@@ -43,11 +43,24 @@ void check_request(const ReconstructRequest& request) {
     throw Error(ErrorCode::usage,
                 "--control and --cameras are both given, but control points serve to solve the poses", "",
                 "leave out --cameras; or tie its poses to the map (docs/how_to/tie_cameras_to_the_map.md)");
+  if (!request.cameras.empty() && !request.altimeter.empty())
+    throw Error(
+        ErrorCode::usage,
+        "--altimeter and --cameras are both given, but heights of an altimeter serve to solve the poses", "",
+        "leave out one or the other");
   if (!request.cameras.empty() && !request.map_image.empty())
     throw Error(ErrorCode::usage,
                 "--map and --cameras are both given, but the map image serves to place solved poses", "",
                 "leave out --cameras or --map");
   if (!request.map_image.empty()) check_map_image(request.map_image, request.crs);
+  if (!(request.readout_time >= 0 && request.readout_time <= 10))
+    throw Error(ErrorCode::usage,
+                fmt::format("--readout-time {} is no time from row to row", request.readout_time), "",
+                "pass seconds from the first row to the last: 0 (global shutter) to 10");
+  if (!request.cameras.empty() && request.readout_time > 0)
+    throw Error(ErrorCode::usage,
+                "--readout-time and --cameras are both given, but the readout time serves to solve the poses",
+                "", "leave out one or the other");
   if (request.control.empty() && !request.marks.empty())
     throw Error(ErrorCode::usage, "--marks is given, but no control points", "", "pass --control FILE");
   if (!(request.cell >= 0 && std::isfinite(request.cell)))
@@ -181,7 +194,8 @@ PosedPhotos solve_poses_of(const ReconstructRequest& request, const Callbacks& c
   if (made.crs.empty() && request.until != ReconstructUntil::poses)
     throw Error(ErrorCode::input, "heights need poses in metres, but the frame of the poses is arbitrary",
                 cameras,
-                "pass --control POINTS, --map MAP_IMAGE or --dem COARSE, or tie the cameras to the map "
+                "pass --control POINTS, --map MAP_IMAGE, --dem COARSE or --altimeter TABLE, or tie the "
+                "cameras to the map "
                 "(docs/how_to/tie_cameras_to_the_map.md) and pass them by --cameras, or pass --until poses");
   return made;
 }

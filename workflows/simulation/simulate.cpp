@@ -98,8 +98,8 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
   const testbed::LitTerrain ground(scene, scenario.exposure.sun);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
   for (const testbed::Shot& shot : shots) {
-    const Pixels image = testbed::render_view(scene, ground, testbed::camera_view(shot.view, shot.motion),
-                                              scenario.exposure, named_seed(seed, shot.name));
+    const Pixels image = testbed::render_view(scene, ground, testbed::view_of(shot), scenario.exposure,
+                                              named_seed(seed, shot.name));
     exporters::write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
   }
   const testbed::TruthTables truth = testbed::truth_tables(scenario, scene, shots);

@@ -97,15 +97,16 @@ class CameraJsonReader {
                                      "it reads layout 1");
     if (root.has("sun")) sun_ = sun_of(root["sun"]);
     if (root.has("cameras"))
-      for (const std::string& name : root["cameras"].keys())
-        lenses_[name] = camera_from_json(root["cameras"][name]);
+      for (const std::string& name : root["cameras"].keys()) lenses_[name] = lens_from(root["cameras"][name]);
   }
 
   CameraRecord record(const JsonValue& image) const {
     image.expect_only({"name", "camera", "centre", "rotation", "quaternion", "rotation_sd", "position_sd",
                        "covariance", "sun", "sun_direction", "image_sun_angle", "taken_utc"});
     CameraRecord record{.image = image["name"].text(), .location = "at " + image.location()};
-    record.camera = lens_of(image["camera"]);
+    const LensRecord lens = lens_of(image["camera"]);
+    record.camera = lens.camera;
+    record.readout_time = lens.readout_time;
     if (image.has("centre")) {
       record.world_from_camera = Eigen::Isometry3d::Identity();
       record.world_from_camera->linear() = rotation_of(image);
@@ -124,9 +125,19 @@ class CameraJsonReader {
     return record;
   }
 
+  std::vector<LensRecord> lenses() const {
+    std::vector<LensRecord> all;
+    for (const auto& [name, lens] : lenses_) all.push_back(lens);
+    return all;
+  }
+
  private:
-  Camera lens_of(const JsonValue& lens) const {
-    if (!lens.is_text()) return camera_from_json(lens);
+  static LensRecord lens_from(const JsonValue& lens) {
+    return {.camera = camera_from_json(lens), .readout_time = readout_time_from_json(lens)};
+  }
+
+  LensRecord lens_of(const JsonValue& lens) const {
+    if (!lens.is_text()) return lens_from(lens);
     const auto found = lenses_.find(lens.text());
     if (found == lenses_.end())
       lens.refuse(fmt::format("there is no camera '{}'", lens.text()), "cameras are listed at /cameras");
@@ -138,18 +149,20 @@ class CameraJsonReader {
     if (!seconds)
       time.refuse(fmt::format("'{}' is no time with Z or an offset", time.text()),
                   "write 2021-02-18T20:51:06Z");
-    return utc_text(*seconds);
+    return precise_utc_text(*seconds);
   }
 
   JsonValue root_;
   std::optional<Sun> sun_;
-  std::map<std::string, Camera> lenses_;
+  std::map<std::string, LensRecord> lenses_;
 };
 
 CameraFile read_waymark(const CameraSource& source) {
   const JsonValue root = JsonValue::from_file(source.path);
   const CameraJsonReader reader(root);
   CameraFile file;
+  file.lenses = reader.lenses();
+  if (!root.has("images") && !file.lenses.empty()) return file;  // lenses only
   file.world = world_of(root["frame"]);
   const JsonValue images = root["images"];
   if (!images.is_array()) images.refuse("this must be an array of images");

@@ -8,8 +8,10 @@
 #include "pipeline/reconstruction/adjustment/build_network.hpp"
 #include "pipeline/reconstruction/adjustment/covariance.hpp"
 #include "pipeline/reconstruction/adjustment/frame_changes.hpp"
+#include "pipeline/reconstruction/adjustment/motion_scales.hpp"
 #include "pipeline/reconstruction/adjustment/outliers.hpp"
 #include "pipeline/reconstruction/adjustment/report_adjustment.hpp"
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
 #include "pipeline/reconstruction/adjustment/solve_network.hpp"
 
 namespace waymark::pipeline {
@@ -23,12 +25,15 @@ class Adjustment {
  public:
   Adjustment(Reconstruction& scene, const Observations& observations, const AdjustmentOptions& options)
       : scene_(scene), seen_(observations), options_(options) {
-    left_out_ = {std::vector<bool>(seen_.control.size()), std::vector<bool>(seen_.positions.size()),
-                 std::vector<bool>(seen_.attitudes.size()), std::vector<bool>(seen_.ups.size()),
-                 std::vector<bool>(seen_.heights.size())};
+    left_out_ = {
+        std::vector<bool>(seen_.control.size()),   std::vector<bool>(seen_.positions.size()),
+        std::vector<bool>(seen_.attitudes.size()), std::vector<bool>(seen_.ups.size()),
+        std::vector<bool>(seen_.heights.size()),   std::vector<bool>(seen_.heights_above_ground.size()),
+        std::vector<bool>(scene_.images.size())};
   }
 
   AdjustmentResult run() {
+    expect_motions(scene_);
     build();
     while (remove(marks_behind(built_.network))) build();
     if (options_.robust) {
@@ -43,7 +48,12 @@ class Adjustment {
         covariance_ = covariance(built_.network);
       else
         covariance_.free_datum = static_cast<int>(free_frame_changes(built_.network).cols());
-      if (!options_.robust || round + 1 == kRounds) break;
+      if (round + 1 == kRounds) break;
+      if (update_motion_scales(round)) {
+        build();
+        continue;
+      }
+      if (!options_.robust) break;
       // A wrong coordinate bends its marks: it goes first.
       const double sigma0 = sigma0_of(built_.network, covariance_.free_datum);
       if (!leave_out_blunder(sigma0) && !remove(outlying_marks(built_.network, options_.outlier_limit)))
@@ -102,6 +112,18 @@ class Adjustment {
     if (posed < 2) point.position.reset(), point.covariance.reset();
   }
 
+  // Returns whether the deviations of expected motions have changed enough for another solution.
+  bool update_motion_scales(int round) {
+    constexpr int kMotionRounds = 8;
+    constexpr double kSettled = 0.05;
+    if (!covariance_.determined || round >= kMotionRounds) return false;
+    const MotionScales by = motion_scale_changes(built_.network, covariance_, left_out_.motions,
+                                                 sigma0_of(built_.network, covariance_.free_datum));
+    left_out_.motion_scales.shift *= by.shift;
+    left_out_.motion_scales.turn *= by.turn;
+    return std::abs(std::log(by.shift)) > kSettled || std::abs(std::log(by.turn)) > kSettled;
+  }
+
   std::vector<bool>* flags_of(Term::Kind kind) {
     switch (kind) {
       case Term::Kind::control:
@@ -114,6 +136,10 @@ class Adjustment {
         return &left_out_.ups;
       case Term::Kind::height:
         return &left_out_.heights;
+      case Term::Kind::height_above_ground:
+        return &left_out_.heights_above_ground;
+      case Term::Kind::motion:
+        return &left_out_.motions;
       default:
         return nullptr;
     }

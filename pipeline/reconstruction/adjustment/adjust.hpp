@@ -18,7 +18,8 @@ struct AdjustmentOptions {
   double outlier_limit = 3;  ///< marks of larger residuals are removed, standard deviations
   double blunder_limit = 4;  ///< other observations of larger test statistics are removed (Baarda 1968)
   int max_iterations = 100;
-  bool covariance = true;  ///< and, with `robust`, the blunder test, which needs it
+  bool covariance = true;        ///< and, with `robust`, the blunder test, which needs it
+  bool estimate_motions = true;  ///< of rolling shutters, with those expected of the poses of the neighbours
   /// Models that replace lens_model(), by lens; empty pointers do not.
   std::vector<std::shared_ptr<const LensModel>> lens_models = {};
 };
@@ -44,7 +45,7 @@ struct ControlResult {
 
 /// Outcome for another observation, for example a GPS position.
 struct ObservationResult {
-  std::string kind = {};  ///< "position", "attitude", "up", "height"
+  std::string kind = {};  ///< "position", "attitude", "up", "height", "height above ground"
   std::size_t image = 0;
   bool used = false;
   Eigen::VectorXd error = {};  ///< estimated - observed

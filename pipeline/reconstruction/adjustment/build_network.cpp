@@ -8,6 +8,8 @@
 #include <numeric>
 
 #include "core/error.hpp"
+#include "pipeline/reconstruction/adjustment/height_above_ground.hpp"
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
 #include "pipeline/reconstruction/adjustment/terms.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
 
@@ -62,6 +64,7 @@ class Builder {
     built_.models.resize(scene.lenses.size());
     built_.lens_blocks.resize(scene.lenses.size());
     built_.pose_blocks.resize(scene.images.size());
+    built_.motion_blocks.resize(scene.images.size());
     built_.point_blocks.resize(scene.points.size());
     built_.control_blocks.resize(observations.control.size());
   }
@@ -70,12 +73,14 @@ class Builder {
     choose_origin();
     for (const std::size_t i : order_.images)
       if (scene_.images[i].world_from_camera) add_image(i);
+    add_motions();
     add_bias();
     add_points();
     for (const std::size_t i : by_image(seen_.positions)) add_position(i);
     for (const std::size_t i : by_image(seen_.attitudes)) add_attitude(i);
     for (const std::size_t i : by_image(seen_.ups)) add_up(i);
     for (const std::size_t i : by_image(seen_.heights)) add_height(i);
+    for (const std::size_t i : by_image(seen_.heights_above_ground)) add_height_above_ground(i);
     for (std::size_t i = 0; i < seen_.lenses.size(); ++i) add_lens_prior(i);
     add_control();
     built_.network.number_columns();
@@ -101,6 +106,7 @@ class Builder {
     for (const auto& o : seen_.attitudes) image(o.image, "an attitude");
     for (const auto& o : seen_.ups) image(o.image, "an upward direction");
     for (const auto& o : seen_.heights) image(o.image, "a height");
+    for (const auto& o : seen_.heights_above_ground) image(o.image, "a height above ground");
     for (const AdjustedImage& i : scene_.images)
       if (i.lens >= scene_.lenses.size())
         throw Error(ErrorCode::input, fmt::format("image {} has no lens {}", i.name, i.lens));
@@ -167,6 +173,52 @@ class Builder {
         add_block(Block::Kind::pose, value, fixed ? std::vector<int>{} : std::vector<int>{0, 1, 2, 3, 4, 5});
   }
 
+  // Motions are unknowns beside what the neighbours let expect of them, or held.
+  void add_motions() {
+    std::vector<std::optional<ExpectedMotion>> expected(scene_.images.size());
+    if (options_.estimate_motions) expected = expected_motions(scene_);
+    for (const std::size_t i : order_.images) {
+      const AdjustedImage& image = scene_.images[i];
+      if (!image.world_from_camera || !image.motion) continue;
+      Eigen::VectorXd value(6);
+      value << image.motion->shift, image.motion->turn;
+      std::vector<int> free;
+      if (expected[i] && expected[i]->shift_sd > 0 && distance_of(*expected[i]) > 0) free = {0, 1, 2};
+      if (expected[i] && expected[i]->turn_sd > 0) free.insert(free.end(), {3, 4, 5});
+      built_.motion_blocks[i] = add_block(Block::Kind::motion, value, free);
+    }
+    for (const std::size_t i : order_.images)
+      if (built_.motion_blocks[i] && expected[i]) add_expected_motion(i, *expected[i]);
+  }
+
+  // Distance between the outer neighbours that a motion is expected from.
+  double distance_of(const ExpectedMotion& expected) const {
+    const auto centre = [&](const auto& neighbour) {
+      return Eigen::Vector3d(scene_.images[neighbour.first].world_from_camera->translation());
+    };
+    return (centre(expected.centres.back()) - centre(expected.centres.front())).norm();
+  }
+
+  void add_expected_motion(std::size_t image, const ExpectedMotion& expected) {
+    constexpr double kDoubt = 10;  // a sudden turn: the images say more of it than the neighbours
+    const std::size_t block = *built_.motion_blocks[image];
+    const double factor_of_sd = at(out_.motions, image) ? kDoubt : 1;
+    BlockIndices of{block};
+    std::vector<double> factors;
+    for (const auto& [neighbour, factor] : expected.centres) {
+      of.push_back(*built_.pose_blocks[neighbour]);
+      factors.push_back(factor);
+    }
+    const double apart = distance_of(expected);
+    if (expected.shift_sd > 0 && apart > 0)
+      network().terms.push_back(
+          shift_term({Kind::motion, image}, of, factors,
+                     factor_of_sd * out_.motion_scales.shift * expected.shift_sd / apart));
+    if (expected.turn_sd > 0)
+      network().terms.push_back(turn_term({Kind::motion, image}, block, expected.motion.turn,
+                                          factor_of_sd * out_.motion_scales.turn * expected.turn_sd));
+  }
+
   // Median of observed minus current heights.
   double median_bias() const {
     std::vector<double> all;
@@ -197,13 +249,9 @@ class Builder {
 
   void add_marks(Kind kind, std::size_t index, const std::vector<Mark>& marks,
                  const std::vector<RankedMark>& ranked, std::size_t block) {
-    for (const RankedMark& m : ranked) {
-      const Mark& mark = marks[m.index];
-      const std::size_t lens = scene_.images[mark.image].lens;
-      network().terms.push_back(mark_term({kind, index, m.index},
-                                          {*built_.lens_blocks[lens], *built_.pose_blocks[mark.image], block},
-                                          *built_.models[lens], mark));
-    }
+    for (const RankedMark& m : ranked)
+      network().terms.push_back(
+          image_mark_term({kind, index, m.index}, scene_, built_, marks[m.index], block));
   }
 
   void add_points() {
@@ -306,6 +354,19 @@ class Builder {
       network().terms.push_back(std::move(term));
   }
 
+  // The ground at the nadir lies above or below the nearest tie point as the points around it let expect.
+  void add_height_above_ground(std::size_t i) {
+    const ObservedHeightAboveGround& seen = seen_.heights_above_ground[i];
+    const auto pose = built_.pose_blocks[seen.image];
+    if (!pose || at(out_.heights_above_ground, i) || !(seen.sd > 0)) return;
+    const auto ground = ground_below(scene_, seen.image);
+    if (!ground || !built_.point_blocks[ground->point]) return;
+    const double offset = ground->height - scene_.points[ground->point].position->z();
+    network().terms.push_back(height_above_ground_term({Kind::height_above_ground, i}, *pose,
+                                                       *built_.point_blocks[ground->point], offset,
+                                                       seen.height, std::hypot(seen.sd, ground->sd)));
+  }
+
   void add_lens_prior(std::size_t i) {
     const LensPrior& prior = seen_.lenses[i];
     if (prior.lens >= scene_.lenses.size())
@@ -330,6 +391,15 @@ class Builder {
 
 }  // namespace
 
+std::unique_ptr<Term> image_mark_term(const Observed& what, const Reconstruction& scene,
+                                      const BuiltNetwork& built, const Mark& mark, std::size_t point) {
+  const std::size_t lens = scene.images[mark.image].lens, pose = *built.pose_blocks[mark.image];
+  if (const auto motion = built.motion_blocks[mark.image])
+    return moving_mark_term(what, {*built.lens_blocks[lens], pose, *motion, point}, *built.models[lens], mark,
+                            readout_fraction(scene.lenses[lens].camera, mark.pixel.y()));
+  return mark_term(what, {*built.lens_blocks[lens], pose, point}, *built.models[lens], mark);
+}
+
 BuiltNetwork build_network(const Reconstruction& scene, const Observations& observations,
                            const AdjustmentOptions& options, const LeftOut& left_out) {
   return Builder(scene, observations, options, left_out).build();
@@ -348,6 +418,10 @@ void write_back(const BuiltNetwork& built, Reconstruction& scene) {
     scene.images[i].world_from_camera = pose_of(block.value.data());
     scene.images[i].world_from_camera->translation() += network.origin;
   }
+  for (std::size_t i = 0; i < scene.images.size(); ++i)
+    if (const auto block = built.motion_blocks[i]; block && !network.blocks[*block].free.empty())
+      scene.images[i].motion = {network.blocks[*block].value.head<3>(),
+                                network.blocks[*block].value.tail<3>()};
   for (std::size_t i = 0; i < scene.points.size(); ++i)
     if (const auto block = built.point_blocks[i])
       scene.points[i].position = network.blocks[*block].value + network.origin;

@@ -36,6 +36,12 @@ Eigen::MatrixXd frame_changes(const Block& block, const Extent& extent) {
     by(0, 7) = 1;
     return by;
   }
+  if (block.kind == Block::Kind::motion) {  // the shift turns and grows with the frame
+    const Eigen::Vector3d shift = Eigen::Vector3d(block.value.head<3>()) / extent.size;
+    by.block<3, 3>(0, 3) << 0, shift.z(), -shift.y(), -shift.z(), 0, shift.x(), shift.y(), -shift.x(), 0;
+    by.block<3, 1>(0, 6) = shift;
+    return by;
+  }
   const bool pose = block.kind == Block::Kind::pose;
   const Eigen::Vector3d at = (Eigen::Vector3d(block.value.tail<3>()) - extent.middle) / extent.size;
   const Eigen::Index row = pose ? 3 : 0;
@@ -64,7 +70,8 @@ Eigen::MatrixXd free_frame_changes(const Network& network) {
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(kChanges, kChanges), seen = held;
   bool bias = false;
   for (const Block& block : network.blocks) {
-    if (block.kind == Block::Kind::lens) continue;
+    // A motion that is held follows the poses, and holds no frame.
+    if (block.kind == Block::Kind::lens || block.kind == Block::Kind::motion) continue;
     bias = bias || block.kind == Block::Kind::bias;
     if (static_cast<Eigen::Index>(block.free.size()) == block.changes()) continue;
     Eigen::MatrixXd by = frame_changes(block, extent);
@@ -74,7 +81,8 @@ Eigen::MatrixXd free_frame_changes(const Network& network) {
   if (!bias) held(7, 7) += 1;
   for (const auto& term : network.terms) {
     Term::Linear linear;
-    if (term->is_mark() || !network.linearize(*term, linear)) continue;
+    const bool in_any_frame = term->is_mark() || term->kind == Term::Kind::motion;
+    if (in_any_frame || !network.linearize(*term, linear)) continue;
     Eigen::MatrixXd by = Eigen::MatrixXd::Zero(term->rows, kChanges);
     for (std::size_t i = 0; i < term->blocks.size(); ++i)
       by += linear.by_block[i] * frame_changes(network.blocks[term->blocks[i]], extent);

@@ -4,8 +4,9 @@
 namespace waymark::pipeline {
 
 /// Returns the changes of the network that no observation sees, one per column, for all unknowns that are not
-/// points: the frame's translation, rotation and scale as far as they are free. Marks never see them, so only
-/// the other terms are examined; a freedom counts as fixed from 1e-5 of the accuracy of the best.
+/// points: the frame's translation, rotation and scale as far as they are free. Marks never see them, nor do
+/// expected motions, so only the other terms are examined; a freedom counts as fixed from 1e-5 of the
+/// accuracy of the best.
 Eigen::MatrixXd free_frame_changes(const Network& network);
 
 /// Returns the weights of the unknowns that are not points in the inner constraints: 1 for centres, the mean

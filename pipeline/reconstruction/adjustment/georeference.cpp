@@ -77,6 +77,7 @@ void transform(Reconstruction& scene, std::size_t component, const Similarity& s
     if (!image.world_from_camera || image.component != component) continue;
     image.world_from_camera->linear() = similarity.rotation * image.world_from_camera->linear();
     image.world_from_camera->translation() = similarity * image.world_from_camera->translation();
+    if (image.motion) image.motion->shift = linear * image.motion->shift;
     if (image.covariance) image.covariance = of_pose * *image.covariance * of_pose.transpose();
   }
   for (TiePoint& point : scene.points) {

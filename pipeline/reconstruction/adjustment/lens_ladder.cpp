@@ -52,8 +52,10 @@ class Ladder {
       }
     scene_.lenses = best_.lenses;
     for (std::size_t i = 0; i < scene_.images.size(); ++i)
-      if (best_.images[i].world_from_camera)
+      if (best_.images[i].world_from_camera) {
         scene_.images[i].world_from_camera = best_.images[i].world_from_camera;
+        scene_.images[i].motion = best_.images[i].motion;
+      }
     out_.adjustment = adjust(scene_, seen_, options_);
     out_.priors = seen_.lenses;
     for (LadderStep& step : out_.steps) {

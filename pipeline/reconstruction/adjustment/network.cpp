@@ -4,7 +4,7 @@
 namespace waymark::pipeline {
 
 bool Network::linearize(const Term& term, Term::Linear& out) const {
-  std::array<const double*, 3> values{};
+  std::array<const double*, Term::kMaxBlocks> values{};
   for (std::size_t i = 0; i < term.blocks.size(); ++i) values[i] = blocks[term.blocks[i]].value.data();
   return term.linearize(values.data(), out);
 }

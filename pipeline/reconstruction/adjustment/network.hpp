@@ -10,9 +10,11 @@ namespace waymark::pipeline {
 
 /// Unknowns that are adjusted together.
 struct Block {
-  enum class Kind { lens, pose, bias, point };
+  enum class Kind { lens, pose, bias, point, motion };
   Kind kind = Kind::point;
-  Eigen::VectorXd value = {};  ///< pose: quaternion (x, y, z, w) of world_from_camera, then centre
+  /// Pose: quaternion (x, y, z, w) of world_from_camera, then centre. Motion: shift, then turn
+  /// (ShutterMotion).
+  Eigen::VectorXd value = {};
   std::vector<int> free = {};  ///< components of a change that are adjusted; none: the block is fixed
   Eigen::Index column = -1;    ///< of the first free component, among the points or among all others
 
@@ -20,19 +22,33 @@ struct Block {
   Eigen::Index changes() const { return kind == Kind::pose ? 6 : value.size(); }
 };
 
-/// Observation as a function of at most three blocks, in units of its standard deviation.
+/// Observation as a function of at most four blocks, in units of its standard deviation.
 class Term {
  public:
   static constexpr int kMaxRows = 3, kMaxColumns = 12;
+  static constexpr std::size_t kMaxBlocks = 4;
   using Values = Eigen::Matrix<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxRows, 1>;
   using Jacobian =
       Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxRows, kMaxColumns>;
   struct Linear {
     Values residual = {};
-    std::array<Jacobian, 3> by_block = {};  ///< by the changes of each block
+    std::array<Jacobian, kMaxBlocks> by_block = {};  ///< by the changes of each block
   };
   /// What is observed; indices into the input.
-  enum class Kind { tie_mark, control_mark, control, position, attitude, up, height, lens, bias, surface };
+  enum class Kind {
+    tie_mark,
+    control_mark,
+    control,
+    position,
+    attitude,
+    up,
+    height,
+    lens,
+    bias,
+    surface,
+    motion,  ///< expected of the poses of the neighbours
+    height_above_ground,
+  };
 
   Term(Kind observed, std::size_t first, std::size_t second, std::vector<std::size_t> of, int row_count)
       : kind(observed), index(first), mark_index(second), blocks(std::move(of)), rows(row_count) {}

@@ -51,6 +51,12 @@ struct ObservedHeight {
   bool biased = true;         ///< height is too large by the unknown height bias
 };
 
+/// Height of a camera above the ground straight below it, for example of an altimeter.
+struct ObservedHeightAboveGround {
+  std::size_t image = 0;
+  double height = 0, sd = 1;  ///< metres
+};
+
 /// Known value of a lens parameter, named as in lens_model().
 struct LensPrior {
   std::size_t lens = 0;
@@ -72,6 +78,7 @@ struct Observations {
   std::vector<ObservedAttitude> attitudes = {};
   std::vector<ObservedUp> ups = {};
   std::vector<ObservedHeight> heights = {};
+  std::vector<ObservedHeightAboveGround> heights_above_ground = {};
   std::vector<LensPrior> lenses = {};
   std::optional<ObservedSurface> surface = {};
   double height_bias_sd = std::numeric_limits<double>::infinity();  ///< metres

@@ -62,7 +62,12 @@ double blunder_statistic(const Network& network, const NetworkCovariance& covari
   Term::Linear linear;
   if (!covariance.determined || !network.linearize(term, linear)) return 0;
   Eigen::MatrixXd cofactor = Eigen::MatrixXd::Identity(term.rows, term.rows);
-  for (std::size_t i = 0; i < term.blocks.size(); ++i)
+  // The covariance between a point and a pose is not at hand: such a residual counts with its own deviation
+  // alone, which makes the statistic too small rather than too large.
+  const bool mixed = term.blocks.size() > 1 && std::ranges::any_of(term.blocks, [&](std::size_t b) {
+                       return network.blocks[b].kind == Block::Kind::point;
+                     });
+  for (std::size_t i = 0; i < term.blocks.size() && !mixed; ++i)
     for (std::size_t j = 0; j < term.blocks.size(); ++j) {
       const Block &a = network.blocks[term.blocks[i]], &b = network.blocks[term.blocks[j]];
       if (a.free.empty() || b.free.empty()) continue;

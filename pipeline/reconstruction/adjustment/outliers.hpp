@@ -21,7 +21,8 @@ std::vector<MarkResidual> marks_behind(const Network& network);
 
 /// Returns the statistic of the blunder test of an observation that is not a mark (Baarda 1968): the residual
 /// against its own covariance, as a normal variable of the same probability (Wilson & Hilferty 1931). 0 for
-/// observations without redundancy. Deviations are enlarged by `sigma0` if it is more than 1.
+/// observations without redundancy. A height above ground counts with its own deviation. Deviations are
+/// enlarged by `sigma0` if it is more than 1.
 double blunder_statistic(const Network& network, const NetworkCovariance& covariance, const Term& term,
                          double sigma0);
 

@@ -87,6 +87,7 @@ void report_others(const Observations& seen, const BuiltNetwork& built, const Ne
   others("attitude", Term::Kind::attitude, seen.attitudes);
   others("up", Term::Kind::up, seen.ups);
   others("height", Term::Kind::height, seen.heights);
+  others("height above ground", Term::Kind::height_above_ground, seen.heights_above_ground);
 }
 
 }  // namespace

@@ -42,11 +42,8 @@ std::optional<Network> network_of_point(const Reconstruction& scene, const Contr
   one.blocks.push_back({Block::Kind::point, start->position - one.origin, {0, 1, 2}, 0});
   for (std::size_t m = 0; m < point.marks.size(); ++m) {
     const Mark& mark = point.marks[m];
-    const auto pose = built.pose_blocks[mark.image];
-    const std::size_t lens = scene.images[mark.image].lens;
-    if (pose)
-      one.terms.push_back(mark_term({Term::Kind::control_mark, index, m},
-                                    {*built.lens_blocks[lens], *pose, block}, *built.models[lens], mark));
+    if (built.pose_blocks[mark.image])
+      one.terms.push_back(image_mark_term({Term::Kind::control_mark, index, m}, scene, built, mark, block));
   }
   std::vector<std::vector<int>> free;
   for (Block& b : one.blocks) {

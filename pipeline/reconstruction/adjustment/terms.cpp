@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -40,6 +42,108 @@ class MarkTerm final : public Term {
  private:
   const LensModel& model_;
   Eigen::Vector2d pixel_;
+  double sd_;
+};
+
+// Derivative of the turn vector of exp(v) exp(d) by d (Sola et al. 2018, eq. 143).
+Eigen::Matrix3d right_jacobian(const Eigen::Vector3d& v) {
+  const double a = v.norm();
+  const double first = a > 1e-4 ? (1 - std::cos(a)) / (a * a) : 0.5;
+  const double second = a > 1e-4 ? (a - std::sin(a)) / (a * a * a) : 1.0 / 6;
+  const Eigen::Matrix3d cross = cross_matrix(v);
+  return Eigen::Matrix3d::Identity() - first * cross + second * cross * cross;
+}
+
+class MovingMarkTerm final : public Term {
+ public:
+  MovingMarkTerm(const Observed& what, const BlockIndices& of, const LensModel& model, const Mark& mark,
+                 double readout_fraction)
+      : Term(what.kind, what.index, what.mark, of, 2),
+        model_(model),
+        pixel_(mark.pixel),
+        sd_(mark.sd),
+        fraction_(readout_fraction) {}
+
+  bool linearize(const double* const* values, Linear& out) const override {
+    const Eigen::Isometry3d pose = pose_of(values[1]);
+    const ShutterMotion motion{Eigen::Map<const Eigen::Vector3d>(values[2]),
+                               Eigen::Map<const Eigen::Vector3d>(values[2] + 3)};
+    const Eigen::Isometry3d moved = moved_pose(pose, motion, fraction_);
+    const Eigen::Matrix3d camera_from_world = moved.linear().transpose();
+    const Eigen::Vector3d point =
+        camera_from_world * (Eigen::Map<const Eigen::Vector3d>(values[3]) - moved.translation());
+    const auto count = static_cast<Eigen::Index>(model_.names().size());
+    LensModel::Residual seen;
+    if (!model_.residual(Eigen::Map<const Eigen::VectorXd>(values[0], count), point, pixel_, seen))
+      return false;
+    out.residual = seen.value / sd_;
+    out.by_block[0] = seen.by_lens / sd_;
+    const Eigen::Matrix<double, 2, 3> by_world = seen.by_point * camera_from_world / sd_;
+    // A turn about the axes of the moved camera moves the point in the camera by point x turn.
+    const Eigen::Matrix<double, 2, 3> by_turn = seen.by_point * cross_matrix(point) / sd_;
+    out.by_block[1].resize(2, 6);
+    out.by_block[1].leftCols<3>() = by_turn * (moved.linear().transpose() * pose.linear());
+    out.by_block[1].rightCols<3>() = -by_world;
+    out.by_block[2].resize(2, 6);
+    out.by_block[2].leftCols<3>() = -fraction_ * by_world;
+    out.by_block[2].rightCols<3>() = fraction_ * by_turn * right_jacobian(fraction_ * motion.turn);
+    out.by_block[3] = by_world;
+    return true;
+  }
+
+ private:
+  const LensModel& model_;
+  Eigen::Vector2d pixel_;
+  double sd_, fraction_;
+};
+
+// The deviation is a fraction of the distance between the outer centres: it grows with the frame, or a
+// smaller frame would fit better.
+class ShiftTerm final : public Term {
+ public:
+  ShiftTerm(const Observed& what, const BlockIndices& of, std::vector<double> factors, double relative_sd)
+      : Term(what.kind, what.index, 0, of, 3), factors_(std::move(factors)), relative_sd_(relative_sd) {}
+
+  bool linearize(const double* const* values, Linear& out) const override {
+    const auto centre = [&](std::size_t k) { return Eigen::Map<const Eigen::Vector3d>(values[k + 1] + 4); };
+    const std::size_t last = factors_.size() - 1;
+    const Eigen::Vector3d apart = centre(last) - centre(0);
+    const double sd = relative_sd_ * apart.norm();
+    if (!(sd > 0)) return false;
+    Eigen::Vector3d residual = Eigen::Map<const Eigen::Vector3d>(values[0]);
+    for (std::size_t k = 0; k <= last; ++k) residual -= factors_[k] * centre(k);
+    out.residual = residual / sd;
+    out.by_block[0].setZero(3, 6);
+    out.by_block[0].leftCols<3>().diagonal().setConstant(1 / sd);
+    for (std::size_t k = 0; k <= last; ++k) {
+      out.by_block[k + 1].setZero(3, 6);
+      out.by_block[k + 1].rightCols<3>().diagonal().setConstant(-factors_[k] / sd);
+    }
+    const Eigen::Matrix3d by_apart = residual / sd * apart.transpose() / apart.squaredNorm();
+    out.by_block[1].rightCols<3>() += by_apart;
+    out.by_block[last + 1].rightCols<3>() -= by_apart;
+    return true;
+  }
+
+ private:
+  std::vector<double> factors_;
+  double relative_sd_;
+};
+
+class TurnTerm final : public Term {
+ public:
+  TurnTerm(const Observed& what, std::size_t motion, const Eigen::Vector3d& turn, double sd)
+      : Term(what.kind, what.index, 0, {motion}, 3), turn_(turn), sd_(sd) {}
+
+  bool linearize(const double* const* values, Linear& out) const override {
+    out.residual = (Eigen::Map<const Eigen::Vector3d>(values[0] + 3) - turn_) / sd_;
+    out.by_block[0].setZero(3, 6);
+    out.by_block[0].rightCols<3>().diagonal().setConstant(1 / sd_);
+    return true;
+  }
+
+ private:
+  Eigen::Vector3d turn_;
   double sd_;
 };
 
@@ -171,11 +275,49 @@ class SurfaceTerm final : public Term {
   Eigen::Vector3d origin_;
 };
 
+class HeightAboveGroundTerm final : public Term {
+ public:
+  HeightAboveGroundTerm(const Observed& what, std::size_t pose, std::size_t point, double height, double sd)
+      : Term(what.kind, what.index, 0, {pose, point}, 1), height_(height), sd_(sd) {}
+
+  bool linearize(const double* const* values, Linear& out) const override {
+    out.residual.setConstant(1, (values[0][6] - values[1][2] - height_) / sd_);
+    out.by_block[0].setZero(1, 6);
+    out.by_block[0](0, 5) = 1 / sd_;
+    out.by_block[1].setZero(1, 3);
+    out.by_block[1](0, 2) = -1 / sd_;
+    return true;
+  }
+
+ private:
+  double height_, sd_;
+};
+
 }  // namespace
+
+std::unique_ptr<Term> height_above_ground_term(const Observed& what, std::size_t pose, std::size_t point,
+                                               double offset, double height, double sd) {
+  return std::make_unique<HeightAboveGroundTerm>(what, pose, point, height + offset, sd);
+}
 
 std::unique_ptr<Term> mark_term(const Observed& what, const BlockIndices& blocks, const LensModel& model,
                                 const Mark& mark) {
   return std::make_unique<MarkTerm>(what, blocks, model, mark);
+}
+
+std::unique_ptr<Term> moving_mark_term(const Observed& what, const BlockIndices& blocks,
+                                       const LensModel& model, const Mark& mark, double readout_fraction) {
+  return std::make_unique<MovingMarkTerm>(what, blocks, model, mark, readout_fraction);
+}
+
+std::unique_ptr<Term> shift_term(const Observed& what, const BlockIndices& blocks,
+                                 const std::vector<double>& factors, double relative_sd) {
+  return std::make_unique<ShiftTerm>(what, blocks, factors, relative_sd);
+}
+
+std::unique_ptr<Term> turn_term(const Observed& what, std::size_t motion, const Eigen::Vector3d& turn,
+                                double sd) {
+  return std::make_unique<TurnTerm>(what, motion, turn, sd);
 }
 
 std::unique_ptr<Term> position_term(const Observed& what, const BlockIndices& blocks, bool pose,

@@ -7,6 +7,7 @@
 
 #include "core/solve.hpp"
 #include "pipeline/reconstruction/adjustment/lens_model.hpp"
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -108,7 +109,7 @@ std::optional<TriangulatedPoint> triangulate(const Reconstruction& scene, const 
   for (const Mark& mark : marks) {
     const AdjustedImage& image = scene.images.at(mark.image);
     if (image.world_from_camera)
-      posed.push_back({&scene.lenses.at(image.lens).camera, *image.world_from_camera, mark.pixel, mark.sd});
+      posed.push_back({&scene.lenses.at(image.lens).camera, pose_of_mark(scene, mark), mark.pixel, mark.sd});
   }
   return triangulate(posed);
 }

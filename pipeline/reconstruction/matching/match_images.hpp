@@ -14,7 +14,8 @@ namespace waymark::pipeline {
 /// Lens before the adjustment.
 struct LensGuess {
   Camera camera = {};
-  double focal_sd = 0.2;  ///< of the focal length, as a fraction of it
+  double focal_sd = 0.2;    ///< of the focal length, as a fraction of it
+  double readout_time = 0;  ///< s from the first row to the last: a rolling shutter; 0: global
 
   /// Returns whether the focal length is good enough for essential matrices.
   bool is_calibrated() const { return focal_sd < 0.1; }
@@ -25,6 +26,7 @@ struct ImageToMatch {
   std::string name = {};
   std::size_t lens = 0;                          ///< index into the lenses
   std::optional<Eigen::Vector3d> position = {};  ///< metres, to choose neighbours
+  std::optional<double> time = {};               ///< s, since any instant common to all images
 };
 
 struct MatchedPair {

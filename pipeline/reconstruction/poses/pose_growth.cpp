@@ -8,6 +8,7 @@
 
 #include "core/random.hpp"
 #include "pipeline/reconstruction/adjustment/build_network.hpp"
+#include "pipeline/reconstruction/adjustment/shutter_motion.hpp"
 #include "pipeline/reconstruction/adjustment/solve_network.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
 #include "pipeline/reconstruction/poses/resection.hpp"
@@ -26,7 +27,8 @@ void solve_scene(Reconstruction& scene, const Observations& observations, const 
       scene, observations, options,
       {std::vector<bool>(observations.control.size()), std::vector<bool>(observations.positions.size()),
        std::vector<bool>(observations.attitudes.size()), std::vector<bool>(observations.ups.size()),
-       std::vector<bool>(observations.heights.size())});
+       std::vector<bool>(observations.heights.size()),
+       std::vector<bool>(observations.heights_above_ground.size()), std::vector<bool>(scene.images.size())});
   const SolveReport report = solve(
       built.network, {.cauchy = kGrowthCauchy, .max_iterations = iterations, .function_tolerance = 1e-5});
   if (report.usable) write_back(built, scene);
@@ -65,7 +67,7 @@ double PoseGrowth::limit_of(std::size_t image) const {
 
 std::optional<double> PoseGrowth::residual(const TiePoint& point, const Mark& mark) const {
   const AdjustedImage& image = scene_.images[mark.image];
-  const Eigen::Isometry3d& pose = *image.world_from_camera;
+  const Eigen::Isometry3d pose = pose_of_mark(scene_, mark);
   const Eigen::Vector3d in_camera = pose.linear().transpose() * (*point.position - pose.translation());
   const auto seen = project(scene_.lenses[image.lens].camera, Point<CameraFrame>{in_camera});
   return seen ? std::optional((*seen - mark.pixel).norm()) : std::nullopt;
@@ -189,6 +191,7 @@ void PoseGrowth::adjust_all(int iterations) {
     const auto& free = options.free_lens_parameters[prior.lens];
     return std::ranges::find(free, prior.parameter) == free.end();
   });
+  expect_motions(scene_);
   solve_scene(scene_, observations, options, iterations);
 }
 
@@ -234,9 +237,11 @@ void PoseGrowth::adjust_around(std::size_t image) {
       options.fixed_images.push_back(i);
   }
   if (options.fixed_images.empty() && moving.size() > 1) options.fixed_images = {moving[0]};
+  options.estimate_motions = false;
   solve_scene(local, {}, options, 12);
   for (const std::size_t i : moving) scene_.images[i].world_from_camera = local.images[i].world_from_camera;
   for (std::size_t k = 0; k < taken.size(); ++k) scene_.points[taken[k]].position = local.points[k].position;
+  expect_motions(scene_);
 }
 
 bool PoseGrowth::seed(const ImagePair& images, const RelativePose& pose) {

@@ -89,9 +89,10 @@ class PoseSolver {
   PoseSolver(std::span<const ImageToMatch> images, std::span<const ImageFeatures> features,
              const ImageMatches& matches, const PoseSettings& settings)
       : matches_(matches), settings_(settings) {
-    for (const LensGuess& lens : matches.lenses) start_.lenses.push_back({.camera = lens.camera});
+    for (const LensGuess& lens : matches.lenses)
+      start_.lenses.push_back({.camera = lens.camera, .readout_time = lens.readout_time});
     for (const ImageToMatch& image : images)
-      start_.images.push_back({.name = image.name, .lens = image.lens});
+      start_.images.push_back({.name = image.name, .lens = image.lens, .time = image.time});
     std::vector<VerifiedPair> verified;
     for (const MatchedPair& pair : matches.pairs) verified.push_back({pair.images, pair.geometry.inliers});
     tracks_ = build_tracks(features, verified).points;

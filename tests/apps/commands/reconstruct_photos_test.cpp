@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -85,6 +86,108 @@ TEST_F(ReconstructPhotos, ImagesOfTwoSizesHaveTwoLenses) {
   for (std::size_t i = 3; i < 6; ++i) write_photo(image(names_[i]), halved_picture(pictures_[i]));
   const Outcome mixed = run();
   EXPECT_THAT(mixed.err, AllOf(HasSubstr("lens 1: 3 images of 300 x 300"), HasSubstr("images of 150 x 150")));
+}
+
+// The lens of the flight in a camera file, changed.
+std::string lens_file(const TempFolder& folder, const std::function<void(json&)>& change) {
+  json file = json::parse(text_of(grid_flight() / "truth/cameras.json"));
+  change(file);
+  write_text(folder / "lens.json", file.dump());
+  return folder / "lens.json";
+}
+
+TEST_F(ReconstructPhotos, ALensFileMayNameNoImages) {
+  write_good(4);
+  const Outcome made = run({"--lens", lens_file(folder_, [](json& file) {
+                              file.erase("images"), file.erase("frame"), file.erase("sun");
+                            })});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("4 of 4 images posed"), HasSubstr("kept fixed")));
+  EXPECT_THAT(made.err, Not(HasSubstr("not here")));
+}
+
+TEST_F(ReconstructPhotos, ALensFileMayNameOtherImages) {
+  write_good(4);
+  const Outcome made = run({"--lens", lens_file(folder_, [](json& file) {
+                              for (std::size_t i = 2; i < 6; ++i)
+                                file["images"][i]["name"] = "earlier_" + std::to_string(i) + ".png";
+                            })});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("4 of 4 images posed"), HasSubstr("kept fixed"),
+                              HasSubstr("4 of the 6 images that it names are not here, e.g. earlier_2.png")));
+}
+
+TEST_F(ReconstructPhotos, OfTwoLensesOfOneSizeTheNamedOneHolds) {
+  write_good(4);
+  const auto two = [](json& file) {
+    file["cameras"]["other"] = file["cameras"]["lens"];
+    file["cameras"]["other"]["fx"] = file["cameras"]["other"]["fy"] = 400;
+  };
+  EXPECT_THAT(run({"--lens", lens_file(folder_, two)}).err, HasSubstr("kept fixed"));
+  const Outcome unnamed = run({"--lens", lens_file(folder_, [&](json& file) {
+                                 two(file);
+                                 file["images"] = json::array();
+                               })});
+  EXPECT_THAT(unnamed.err, HasSubstr("has 2 lenses for 300 x 300 pixels and does not name"));
+}
+
+TEST_F(ReconstructPhotos, ARollingShutterNeedsTimes) {
+  write_good(4);
+  const std::string lens = (grid_flight() / "truth/cameras.json").string();
+  const Outcome untimed = run({"--lens", lens, "--readout-time", "0.05"});
+  ASSERT_EQ(untimed.code, 0) << untimed.err;
+  EXPECT_THAT(untimed.err, AllOf(HasSubstr("4 of 4 images of a rolling shutter have no time of exposure"),
+                                 HasSubstr("without times of exposure it is not modelled")));
+  const Outcome timed = run({"--lens", lens_file(folder_, [](json& file) {
+                               file["cameras"]["lens"]["readout_time"] = 0.05;
+                               for (std::size_t i = 0; i < 6; ++i)
+                                 file["images"][i]["taken_utc"] =
+                                     "2030-01-01T00:00:0" + std::to_string(i) + ".5Z";
+                             })});
+  ASSERT_EQ(timed.code, 0) << timed.err;
+  EXPECT_THAT(timed.err, HasSubstr("rolling shutter of 50 ms: the motion of 4 of 4 images is estimated"));
+  EXPECT_EQ(json::parse(text_of(folder_ / "out/cameras.json"))["cameras"]["lens_1"]["readout_time"], 0.05);
+  EXPECT_EQ(run({"--lens", lens, "--readout-time", "-1"}).code, 2);
+}
+
+// Heights of the six cameras above the ground, which is level to some metres.
+std::string altimeter_table(const TempFolder& folder, const std::vector<std::string>& names) {
+  const json truth = json::parse(text_of(grid_flight() / "truth/cameras.json"));
+  std::string table = "image,above_ground,sd\n";
+  for (std::size_t i = 0; i < names.size(); ++i)
+    table += names[i] + "," + std::to_string(double(truth["images"][i]["centre"][2])) + ",3\n";
+  write_text(folder / "altimeter.csv", table + "stranger.jpg,80,1\n");
+  return folder / "altimeter.csv";
+}
+
+TEST_F(ReconstructPhotos, AnAltimeterGivesALocalFrameOfTrueSize) {
+  write_good(6);
+  const std::string lens = (grid_flight() / "truth/cameras.json").string();
+  const Outcome made = waymark({"reconstruct", folder_ / "images", "-o", folder_ / "out", "--lens", lens,
+                                "--altimeter", altimeter_table(folder_, names_), "--until", "dem"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("frame: local"), HasSubstr("a local frame of true size by 6 heights"),
+                              HasSubstr("1 of 7 altimeter readings are of images that are not there")));
+  EXPECT_TRUE(fs::exists(folder_ / "out/dem.tif"));
+  const json found = json::parse(text_of(folder_ / "out/cameras.json")), truth = json::parse(text_of(lens));
+  const auto apart = [](const json& file) {
+    double squares = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      squares +=
+          std::pow(double(file["images"][0]["centre"][axis]) - double(file["images"][5]["centre"][axis]), 2);
+    return std::sqrt(squares);
+  };
+  EXPECT_NEAR(apart(found) / apart(truth), 1, 0.02);
+  EXPECT_NEAR(double(found["images"][0]["centre"][2]), 300, 40);  // of the ground below it, which has relief
+}
+
+TEST_F(ReconstructPhotos, AnAltimeterOfOtherImagesIsRefused) {
+  write_good(4);
+  write_text(folder_ / "other.csv", "image,above_ground\nx.jpg,80\n");
+  const Outcome other = run({"--altimeter", folder_ / "other.csv"});
+  EXPECT_EQ(other.code, 1);
+  EXPECT_THAT(other.err,
+              HasSubstr("none of its 1 readings is of one of the 4 images; the first names 'x.jpg'"));
 }
 
 TEST_F(ReconstructPhotos, PixelsCountAsStoredWhateverTheOrientation) {

@@ -110,6 +110,54 @@ TEST(CameraFile, SaysWhatIsWrongWithAValue) {
               HasSubstr("did you mean 'colmap'?"));
 }
 
+KnownLenses lenses_of(const json& file) {
+  return import_lenses(write_text("lens.json", file.dump(1)));
+}
+
+TEST(CameraFile, ALensNeedsNeitherImagesNorAFrame) {
+  json file = sample();
+  file["cameras"]["descent"]["readout_time"] = 0.033;
+  file.erase("frame"), file.erase("images");
+  const KnownLenses known = lenses_of(file);
+  ASSERT_EQ(known.lenses.size(), 1u);
+  EXPECT_EQ(known.lenses[0].camera.fx, 900);
+  EXPECT_EQ(known.lenses[0].readout_time, 0.033);
+  EXPECT_TRUE(known.images.empty());
+  EXPECT_THAT(message_of([&] { read(file); }), HasSubstr("names no images"));
+  file["images"] = json::array();
+  file["frame"] = {{"axes", "arbitrary"}};
+  EXPECT_EQ(lenses_of(file).lenses.size(), 1u);
+  file["cameras"]["descent"]["readout_time"] = -1;
+  EXPECT_THAT(message_of([&] { lenses_of(file); }),
+              AllOf(HasSubstr("a readout time of -1 s"), HasSubstr("/cameras/descent/readout_time")));
+}
+
+TEST(CameraFile, EntriesKeepTheirLensAndTheirTime) {
+  json file = sample();
+  file["cameras"]["second"] = file["cameras"]["descent"];
+  file["cameras"]["second"]["fx"] = 950;
+  file["images"][0]["taken_utc"] = "2021-02-18T20:51:06.25Z";
+  file["images"][1]["camera"] = "second";
+  const KnownLenses known = lenses_of(file);
+  ASSERT_EQ(known.lenses.size(), 2u);
+  const KnownLenses::Entry *a = find_entry(known, "flight/a.jpg"), *b = find_entry(known, "b.png");
+  ASSERT_TRUE(a && b);
+  EXPECT_EQ(known.lenses[*a->lens].camera.fx, 900);
+  EXPECT_EQ(known.lenses[*b->lens].camera.fx, 950);
+  EXPECT_EQ(a->taken_utc, "2021-02-18T20:51:06.250Z");
+  EXPECT_EQ(find_entry(known, "c.png"), nullptr);
+}
+
+TEST(CameraFile, InteriorOrientationsAreLenses) {
+  const KnownLenses known = import_lenses(write_text(
+      "odm.json",
+      R"({"v2 dji": {"projection_type": "brown", "width": 4000, "height": 3000, "focal_x": 0.8, "focal_y": 0.8,
+          "c_x": 0, "c_y": 0, "k1": 0.01, "k2": 0, "p1": 0, "p2": 0, "k3": 0}})"));
+  ASSERT_EQ(known.lenses.size(), 1u);
+  EXPECT_EQ(known.lenses[0].camera.fx, 3200);
+  EXPECT_TRUE(known.images.empty());
+}
+
 TEST(CameraFile, OfTwoImagesOfOneNameNeitherHasAPose) {
   json file = sample();
   file["images"].push_back(file["images"][0]);

@@ -74,5 +74,11 @@ TEST(LabelSun, ReadsAnglesOfPlanetaryLabels) {
   EXPECT_FALSE(label_sun("INCIDENCE_ANGLE = -1e32").elevation);
 }
 
+TEST(UtcTime, KeepsMilliseconds) {
+  for (const char* text : {"2021-02-18T20:51:06.250Z", "2021-02-18T20:51:06Z", "1969-12-31T23:59:59.999Z"})
+    EXPECT_EQ(importers::precise_utc_text(*importers::utc_seconds(text)), text);
+  EXPECT_EQ(importers::precise_utc_text(59.9999), "1970-01-01T00:01:00Z");
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -64,7 +64,7 @@ class Made {
       pair.geometry.homography_inliers = count();
       return pair;
     });
-    m.lenses = list<LensGuess>([&] { return LensGuess{camera(), number()}; });
+    m.lenses = list<LensGuess>([&] { return LensGuess{camera(), number(), number()}; });
     for (std::size_t i = 0; i < m.lenses.size(); ++i) m.voted.push_back(random_.bernoulli(0.5));
     m.tried = count();
     return m;
@@ -76,6 +76,7 @@ class Made {
     s.lenses = list<AdjustedLens>([&] {
       AdjustedLens lens{camera(), {"f", "k1"}, Eigen::MatrixXd::Zero(2, 2)};
       lens.covariance << 1, number(), 3, 4;
+      lens.readout_time = number();
       return lens;
     });
     s.images = list<AdjustedImage>([&] {
@@ -87,6 +88,8 @@ class Made {
         image.world_from_camera = pose;
       }
       if (random_.bernoulli(0.7)) image.covariance = matrix<Eigen::Matrix<double, 6, 6>>();
+      if (random_.bernoulli(0.7)) image.time = number();
+      if (random_.bernoulli(0.7)) image.motion = {matrix<Eigen::Vector3d>(), matrix<Eigen::Vector3d>()};
       return image;
     });
     s.points = list<TiePoint>([&] {

@@ -87,6 +87,51 @@ TEST(Descent, RefusesAltitudesOutOfOrder) {
   EXPECT_EQ(refusal({}, 1500, 10), "accepted") << "already under rockets";
 }
 
+// The shield is released above, falls faster than the lander and is gone before it lands.
+TEST(Descent, TheHeatShieldFallsAheadOfTheLander) {
+  Scenario scenario;
+  Flight& flight = scenario.flights[0];
+  flight.path = "landing";
+  flight.images = 40;
+  flight.from_altitude = 4000, flight.to_altitude = 10;
+  for (const Shot& shot : plan_shots(scenario)) EXPECT_EQ(shot.shield.radius, 0);
+  flight.heat_shield = 4.5;
+  double last = 0;
+  std::size_t seen = 0;
+  for (const Shot& shot : plan_shots(scenario)) {
+    if (!(shot.shield.radius > 0)) continue;
+    const double below = shot.view.centre().xyz.z() - shot.shield.centre.z();
+    EXPECT_GT(below, last);
+    EXPECT_GT(shot.shield.centre.z(), scenario.ground.up);
+    EXPECT_NEAR(shot.shield.normal.norm(), 1, 1e-12);
+    last = below;
+    ++seen;
+  }
+  EXPECT_GT(seen, 5u);
+  EXPECT_LT(seen, 30u);
+}
+
+TEST(Descent, DustThickensTowardsTheGround) {
+  Scenario scenario;
+  Flight& flight = scenario.flights[0];
+  flight.path = "landing";
+  flight.images = 60;
+  flight.from_altitude = 2500, flight.to_altitude = 10;
+  flight.dust = 3;
+  double last = 0;
+  for (const Shot& shot : plan_shots(scenario)) {
+    const double altitude = shot.view.centre().xyz.z() - scenario.ground.up;
+    EXPECT_EQ(shot.dust.depth > 0, altitude < 60) << altitude;
+    EXPECT_GE(shot.dust.depth, last - 1e-9);
+    EXPECT_LE(shot.dust.depth, 3);
+    last = shot.dust.depth;
+    if (shot.dust.depth > 0) {
+      EXPECT_LT(dust_depth(shot.dust, shot.dust.centre.x() + 400, shot.dust.centre.y()), 0.1);
+    }
+  }
+  EXPECT_GT(last, 1);
+}
+
 TEST(Descent, ALandingHasOneLine) {
   Scenario scenario;
   Flight& flight = scenario.flights[0];

@@ -14,7 +14,7 @@ using namespace pipeline;
 // Derivatives by differences along the changes of each block.
 void expect_derivatives(const Term& term, std::vector<Block> blocks, const char* what) {
   const auto values = [&] {
-    std::array<const double*, 3> at{};
+    std::array<const double*, Term::kMaxBlocks> at{};
     for (std::size_t i = 0; i < blocks.size(); ++i) at[i] = blocks[i].value.data();
     return at;
   };
@@ -84,6 +84,37 @@ TEST(Terms, DerivativesAreThoseOfTheResiduals) {
   const ObservedSurface surface{
       [](double x, double y) { return std::optional(0.3 * x - 0.2 * y + 0.01 * x * x); }, 2};
   expect_derivatives(*surface_term({}, 0, surface, {100, 200, 0}), {point}, "surface");
+}
+
+TEST(Terms, DerivativesOfMovingCamerasAreThoseOfTheResiduals) {
+  const Camera camera{.columns = 1000, .rows = 800, .fx = 900, .fy = 910, .cx = 510, .cy = 390};
+  const auto model = lens_model(camera);
+  const Block pose = pose_block();
+  Block motion{Block::Kind::motion, Eigen::VectorXd(6)};
+  motion.value << 1.5, -0.7, 0.4, 0.2, -0.3, 0.1;
+  const Block point{Block::Kind::point, pose_of(pose.value.data()) * Eigen::Vector3d(8, -5, 40)};
+  const Block lens{Block::Kind::lens, model->parameters(camera)};
+  for (const double fraction : {-0.5, 0.0, 0.3})
+    expect_derivatives(*moving_mark_term({}, {0, 1, 2, 3}, *model, {0, {600, 300}, 0.5}, fraction),
+                       {lens, pose, motion, point}, "moving mark");
+  motion.value.tail<3>().setZero();
+  expect_derivatives(*moving_mark_term({}, {0, 1, 2, 3}, *model, {0, {600, 300}, 0.5}, 0.3),
+                     {lens, pose, motion, point}, "moving mark without a turn");
+  Block next = pose;
+  next.value.tail<3>() << 9, 3, 51;
+  expect_derivatives(*shift_term({}, {0, 1, 2}, {-0.1, 0.1}, 0.3), {motion, pose, next}, "shift");
+  expect_derivatives(*turn_term({}, 0, {0.1, 0.2, 0.3}, 0.01), {motion}, "turn");
+}
+
+TEST(Terms, AHeightAboveGroundIsThatAboveThePoint) {
+  const Block pose = pose_block();  // at a height of 50
+  const Block point{Block::Kind::point, Eigen::Vector3d(4, 4, 7)};
+  const auto term = height_above_ground_term({}, 0, 1, 2, 40, 0.5);  // the ground at the nadir is at 9
+  Term::Linear linear;
+  const std::array<const double*, 2> values{pose.value.data(), point.value.data()};
+  ASSERT_TRUE(term->linearize(values.data(), linear));
+  EXPECT_NEAR(linear.residual[0], (50 - 9 - 40) / 0.5, 1e-12);
+  expect_derivatives(*term, {pose, point}, "height above ground");
 }
 
 TEST(Terms, FixedAndFreeCoordinatesGiveNoRows) {

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+#include "pipeline/reconstruction/reconstruction.hpp"
+namespace waymark::pipeline {
+
+/// Returns when a row is read out, as a fraction of the readout time after the middle row: [-0.5, 0.5].
+double readout_fraction(const Camera& camera, double row);
+
+/// Returns the pose of a camera after a fraction of its motion.
+Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& world_from_camera, const ShutterMotion& motion,
+                             double fraction);
+
+/// Returns the pose of the image of a mark when its row was read out; the image has a pose. The row is that
+/// of the mark, not that of its prediction: residuals of a pixel differ by the motion during a row.
+Eigen::Isometry3d pose_of_mark(const Reconstruction& scene, const Mark& mark);
+
+/// Motion that the poses of neighbours in time let expect.
+struct ExpectedMotion {
+  ShutterMotion motion = {};
+  double shift_sd = 0;  ///< of each component, in the frame of the reconstruction
+  double turn_sd = 0;   ///< of each component, radians
+  /// The shift is the sum of the centres of these images times their factors.
+  std::vector<std::pair<std::size_t, double>> centres = {};
+};
+
+/// Returns the motions of the images whose lens has a rolling shutter: the slope of the parabola through the
+/// poses of three neighbours in time. None for images without pose or time, or without a neighbour of another
+/// time in their component.
+/// - The deviations are what the third differences of the poses let expect, and at least 2 % of the motion
+/// and
+///   0.2 degrees per second.
+/// - Times in whole seconds add their rounding. Of fewer than four images the deviation is the motion itself.
+/// - Cost: one sort of the images.
+std::vector<std::optional<ExpectedMotion>> expected_motions(const Reconstruction& scene);
+
+/// Gives the posed images of rolling shutters that have no motion the expected one. Returns how many have
+/// one.
+std::size_t expect_motions(Reconstruction& scene);
+
+}  // namespace waymark::pipeline
