@@ -133,9 +133,15 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
       if (found.accepted || seen.sightings.empty()) return found;
     }
     const auto tops = horizon_tops(seen, (*known)->top_type);
-    if (tops.size() >= 3 && ground) {
+    if (ground && (seen.horizon || tops.size() >= 3)) {
       if (!(*known)->skyline) (*known)->skyline.emplace(skyline_summits(map), ground, skyline);
-      const localization::SkylineAnswer answer = (*known)->skyline->find(tops);
+      localization::SkylineAnswer answer;
+      if (seen.horizon) answer = (*known)->skyline->find(*seen.horizon);
+      // A part of the horizon, or one with obstacles in front of it, may still have its tops.
+      if (!answer.fix && tops.size() >= 3) {
+        localization::SkylineAnswer by_tops = (*known)->skyline->find(tops);
+        if (by_tops.fix || !seen.horizon) answer = std::move(by_tops);
+      }
       if (answer.fix) found.accepted = answer.fix->at;
       for (const localization::SkylineFix& fix : answer.candidates) found.candidates.push_back(fix.at);
       found.reason = answer.reason;
