@@ -2,8 +2,10 @@
 #pragma once
 #include <Eigen/Core>
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <vector>
+#include "localization/horizon_profile.hpp"
 #include "localization/identification/known_features.hpp"
 #include "localization/identification/map_landmark.hpp"
 #include "localization/pose2.hpp"
@@ -75,6 +77,8 @@ struct SightingSet {
   Pose2 robot_from_sensor;
   std::vector<SeenLandmark> sightings;
   std::vector<EarlierRange> earlier_ranges = {};  ///< for a PoseFinder only; the oldest first
+  /// Of a panorama, from the robot's forward axis, for a PoseFinder only.
+  std::shared_ptr<const HorizonProfile> horizon = {};
 };
 
 inline bool SeenLandmark::is_valid() const {

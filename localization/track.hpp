@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 #include "localization/localizer.hpp"
 namespace waymark::localization {
@@ -27,6 +28,14 @@ struct GraphFit {
   bool converged = false;
 };
 
+/// Search for the pose in the whole map: the last one that found the robot, or the last of all.
+struct PoseSearchRecord {
+  std::optional<double> t;                       ///< s, of a pose that was accepted; absent: none was
+  PoseEstimate at;                               ///< that pose
+  std::string reason = {};                       ///< why none was
+  std::optional<double> wrong_probability = {};  ///< that the best pose is not the robot's, if it is known
+};
+
 /// Estimates along a log, with counts over all events.
 struct Track {
   std::vector<TrackRow> rows;
@@ -36,6 +45,7 @@ struct Track {
   std::int64_t updates = 0;                        ///< sets of sightings
   std::int64_t fixes = 0, fixes_rejected = 0;      ///< GNSS and compass readings
   double seconds = 0;                              ///< of all updates, if timed
+  std::optional<PoseSearchRecord> search = {};     ///< of methods that searched the whole map
   std::optional<GraphFit> graph = {};              ///< of methods that optimise a graph
 };
 

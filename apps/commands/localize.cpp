@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 #include <iostream>
 
 #include "apps/command.hpp"
@@ -145,6 +146,17 @@ class Localize final : public Command {
         {"wrong", ResultKind::integer, "Those of them with another landmark"},
         {"lost_rows", ResultKind::integer, "Poses while the robot was lost"},
         {"first_lost_s", ResultKind::number, "Time of the first of them; null: none"},
+        {"found_s", ResultKind::number,
+         "Time of the last pose found in the whole map without a start, or after the robot was lost; null: "
+         "none"},
+        {"found_x_m", ResultKind::number, "That pose, x in the map frame"},
+        {"found_y_m", ResultKind::number, "That pose, y in the map frame"},
+        {"found_yaw_rad", ResultKind::number, "That pose, yaw from the map's x towards y"},
+        {"found_covariance", ResultKind::object, "Its covariance: xx, xy, yy (m2), xyaw, yyaw, yawyaw"},
+        {"wrong_probability", ResultKind::number,
+         "Probability that this pose, or the best one of the last search, is wrong; null: no search, or by "
+         "ranges"},
+        {"search_reason", ResultKind::text, "Why the searches found no pose; null: one did, or no search"},
         {"end_s", ResultKind::number, "Time of the last pose"},
         {"end_x_m", ResultKind::number, "Last pose, x in the map frame"},
         {"end_y_m", ResultKind::number, "Last pose, y in the map frame"},
@@ -177,6 +189,7 @@ class Localize final : public Command {
                   {"wrong", track.wrong},
                   {"lost_rows", std::ranges::count(track.rows, true, &localization::TrackRow::lost)}};
     if (lost != track.rows.end()) values.emplace_back("first_lost_s", lost->t);
+    if (track.search) add_search(*track.search, values);
     if (!track.rows.empty()) {
       const localization::TrackRow& end = track.rows.back();
       values.insert(values.end(), {{"end_s", end.t},
@@ -192,6 +205,23 @@ class Localize final : public Command {
                                    {"unknowns", track.graph->unknowns},
                                    {"converged", track.graph->converged}});
     return values;
+  }
+
+  static void add_search(const localization::PoseSearchRecord& search, Values& values) {
+    if (search.wrong_probability) values.emplace_back("wrong_probability", *search.wrong_probability);
+    if (!search.t) {
+      values.emplace_back("search_reason", text_or_null(search.reason));
+      return;
+    }
+    const Eigen::Matrix3d& c = search.at.covariance;
+    values.insert(values.end(),
+                  {{"found_s", *search.t},
+                   {"found_x_m", search.at.pose.x},
+                   {"found_y_m", search.at.pose.y},
+                   {"found_yaw_rad", search.at.pose.yaw},
+                   {"found_covariance",
+                    ResultJson{fmt::format(R"({{"xx":{},"xy":{},"yy":{},"xyaw":{},"yyaw":{},"yawyaw":{}}})",
+                                           c(0, 0), c(0, 1), c(1, 1), c(0, 2), c(1, 2), c(2, 2))}}});
   }
 
   /// Prints the result; keys without a value are null.
@@ -221,6 +251,19 @@ class Localize final : public Command {
     if (track.updates)
       log_summary(
           fmt::format("{:.1f} us per update\n", 1e6 * track.seconds / static_cast<double>(track.updates)));
+    if (track.search && track.search->t) {
+      const localization::PoseEstimate& at = track.search->at;
+      log_summary(fmt::format(
+          "found at {:.3f} s: x {:.2f}, y {:.2f} m, yaw {:.4f}; standard deviations {:.2g}, {:.2g} m, "
+          "{:.2g}{}\n",
+          *track.search->t, at.pose.x, at.pose.y, at.pose.yaw, std::sqrt(at.covariance(0, 0)),
+          std::sqrt(at.covariance(1, 1)), std::sqrt(at.covariance(2, 2)),
+          track.search->wrong_probability
+              ? fmt::format("; wrong with a probability of {:.2g}", *track.search->wrong_probability)
+              : ""));
+    } else if (track.search && !track.rows.empty() && track.rows.back().lost) {
+      log_warning("the robot is not found: " + track.search->reason);
+    }
     const auto lost = std::ranges::count(track.rows, true, &localization::TrackRow::lost);
     if (lost) {
       const auto first = std::ranges::find(track.rows, true, &localization::TrackRow::lost);

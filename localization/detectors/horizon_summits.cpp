@@ -70,6 +70,7 @@ SightingSet sightings_of_summits(const HorizonProfile& horizon, const HorizonSum
     s.elevation_sd = horizon.elevation_sd;
     set.sightings.push_back(s);
   }
+  set.horizon = std::make_shared<const HorizonProfile>(horizon);
   return set;
 }
 

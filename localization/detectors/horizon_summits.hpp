@@ -2,15 +2,9 @@
 #pragma once
 #include <optional>
 #include <vector>
+#include "localization/horizon_profile.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::localization {
-
-/// Elevation of the horizon by direction, of a full turn or a part.
-struct HorizonProfile {
-  double first_angle = 0, angle_step = 0;  ///< rad, left of forward
-  double elevation_sd = 0.001;             ///< rad
-  std::vector<float> elevations;           ///< rad; not finite: unknown
-};
 
 /// Options of the summit detector for horizon profiles.
 struct HorizonSummitOptions {

@@ -2,6 +2,7 @@
 #include "localization/global/pose_finder.hpp"
 
 #include <Eigen/LU>
+#include <cmath>
 #include <numbers>
 
 namespace waymark::localization {
@@ -20,6 +21,14 @@ PoseEstimate pose_anywhere(const Eigen::AlignedBox2d& box) {
                     : Eigen::Vector2d(box.sizes().cwiseAbs2() / 12 + Eigen::Vector2d::Ones());
   const Eigen::Vector3d all(variance.x(), variance.y(), std::numbers::pi * std::numbers::pi / 3);
   return {{centre.x(), centre.y(), 0}, all.asDiagonal()};
+}
+
+double wrong_probability(std::span<const double> log_false_alarms) {
+  if (log_false_alarms.empty()) return 1;
+  const double first = log_false_alarms[0];
+  double others = std::exp(first);  // over the odds of the first
+  for (const double other : log_false_alarms.subspan(1)) others += std::exp(first - other);
+  return std::isfinite(others) ? others / (1 + others) : 1;
 }
 
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {

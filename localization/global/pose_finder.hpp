@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 #include "localization/sighting.hpp"
@@ -13,7 +14,14 @@ struct PoseSearchResult {
   std::optional<PoseEstimate> accepted;  ///< the only pose that explains the sightings
   std::vector<PoseEstimate> candidates;  ///< best first, including the accepted one
   std::string_view reason = {};          ///< why none is accepted
+  /// That the first candidate is not the robot's pose; absent for ranges, whose poses are compared by chi2.
+  std::optional<double> wrong_probability = {};
 };
+
+/// Returns the probability that the first of distinct poses is wrong; 1 without poses.
+/// - `log_false_alarms`: ln of the expected number of chance poses of the whole map that fit as well as each.
+/// - The odds of a pose against a place outside the map are one over that number, for even odds before.
+double wrong_probability(std::span<const double> log_false_alarms);
 
 /// Global localization: finds the pose of the robot from sightings and the map alone.
 using PoseFinder = std::function<PoseSearchResult(const SightingSet&)>;

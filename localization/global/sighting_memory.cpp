@@ -251,6 +251,7 @@ std::optional<PoseEstimate> SightingMemory::check(const PoseCheck& check, const 
 }
 
 SightingSet add_bearings(SightingSet remembered, const SightingSet& seen) {
+  remembered.horizon = seen.horizon;
   for (SeenLandmark s : seen.sightings) {
     if (s.range) continue;
     if (s.bearing) s.bearing = wrap_angle(*s.bearing + seen.robot_from_sensor.yaw);

@@ -9,6 +9,7 @@
 
 #include "localization/global/skyline_fit.hpp"
 #include "localization/global/skyline_index.hpp"
+#include "localization/global/skyline_profile.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -37,7 +38,12 @@ class SkylineSearch {
   SkylineSearch(std::span<const HorizonTop> tops, const SkylineIndex& index, const SkylineOptions& options)
       : tops_(tops), index_(index), o_(options) {}
 
+  /// Searches by the whole horizon.
+  SkylineSearch(const SeenHorizon& seen, const SkylineIndex& index, const SkylineOptions& options)
+      : index_(index), o_(options), seen_(&seen) {}
+
   SkylineAnswer find() const {
+    if (seen_) return find_by_profile();
     const auto usable = static_cast<double>(
         std::ranges::count_if(tops_, [](const HorizonTop& t) { return t.elevation.has_value(); }));
     if (index_.summits_.size() < 3)
@@ -51,6 +57,33 @@ class SkylineSearch {
   }
 
  private:
+  SkylineAnswer find_by_profile() const {
+    if (index_.summits_.size() < 3)
+      return {.fix = {}, .reason = "too few summits in the map", .candidates = {}};
+    if (!seen_->is_usable())
+      return {.fix = {}, .reason = "too little of the horizon is known", .candidates = {}};
+    SkylineAnswer answer = look_at(headings(index_.viewpoints_, 1));
+    answer.reason = profile_verdict(answer.candidates);
+    if (answer.reason.empty()) answer.fix = answer.candidates[0];
+    return answer;
+  }
+
+  std::vector<HorizonGuess> headings(std::span<const HorizonViewpoint> viewpoints,
+                                     std::size_t max_count) const {
+    return seen_ ? best_headings(viewpoints, *seen_, max_count, o_)
+                 : best_headings(viewpoints, tops_, max_count, o_);
+  }
+
+  std::string_view profile_verdict(const std::vector<SkylineFix>& fixes) const {
+    if (fixes.empty()) return "no position has such a horizon";
+    const double rays = static_cast<double>(seen_->rays().size());
+    if (fixes[0].matched < o_.min_fraction * rays) return "too little of the horizon fits one pose";
+    if (!(fixes[0].log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
+    if (fixes.size() > 1 && !(badness(fixes[1]) - badness(fixes[0]) > std::log(o_.lead)))
+      return "two poses fit alike";
+    return "";
+  }
+
   SkylineAnswer look_at(std::vector<HorizonGuess> guesses) const {
     double step = index_.options_.step;
     for (std::size_t level = 0; step > 2.5 * index_.terrain_.cell(); ++level) {
@@ -59,11 +92,14 @@ class SkylineSearch {
       guesses = refine(guesses, step);
       step /= 2;
     }
-    keep_best(guesses, static_cast<std::size_t>(o_.max_tried));
+    // The whole horizon ranks positions better than its tops do.
+    keep_best(guesses, static_cast<std::size_t>(seen_ ? o_.max_tried / 2 : o_.max_tried));
     std::vector<std::optional<SkylineFix>> fits(guesses.size());
     const SkylineScene scene{index_.terrain_, index_.summits_, o_};
-    tbb::parallel_for(std::size_t{0}, guesses.size(),
-                      [&](std::size_t i) { fits[i] = fit_horizon(scene, tops_, guesses[i], step / 2); });
+    tbb::parallel_for(std::size_t{0}, guesses.size(), [&](std::size_t i) {
+      fits[i] = seen_ ? fit_profile(scene, *seen_, guesses[i], step / 2)
+                      : fit_horizon(scene, tops_, guesses[i], step / 2);
+    });
     std::erase_if(fits, [](const auto& fix) { return !fix; });
     std::ranges::stable_sort(fits, {}, [](const auto& fix) { return badness(*fix); });
     SkylineAnswer answer{.fix = {}, .reason = {}, .candidates = {}};
@@ -79,8 +115,8 @@ class SkylineSearch {
     for (const HorizonGuess& g : guesses)
       for (const auto& [dx, dy] : {std::pair{-1, -1}, {-1, 1}, {1, -1}, {1, 1}})
         at.push_back(g.at + step / 4 * Eigen::Vector2d(dx, dy));
-    const std::size_t headings = step / 2 > 2.5 * index_.terrain_.cell() ? 1 : kHeadings;
-    return best_headings(compute_horizons(index_.terrain_, at, step / 2, o_), tops_, headings, o_);
+    const std::size_t count = step / 2 > 2.5 * index_.terrain_.cell() ? 1 : kHeadings;
+    return headings(compute_horizons(index_.terrain_, at, step / 2, o_), count);
   }
 
   /// Returns whether a fix is at another position than all of these.
@@ -106,6 +142,7 @@ class SkylineSearch {
   std::span<const HorizonTop> tops_;
   const SkylineIndex& index_;
   const SkylineOptions& o_;
+  const SeenHorizon* seen_ = nullptr;  // null: by tops
 };
 
 void SkylineOptions::describe(OptionVisitor& option) {
@@ -135,6 +172,13 @@ SkylineAnswer SkylineIndex::find(std::span<const HorizonTop> tops, std::optional
   for (HorizonTop& t : sound)
     if (!usable(t)) t = {.bearing = 0, .elevation = {}};
   return SkylineSearch(sound, *this, options).find();
+}
+
+SkylineAnswer SkylineIndex::find(const HorizonProfile& horizon, std::optional<double> heading) const {
+  SkylineOptions options = options_;
+  if (heading) options.heading = heading;
+  const SeenHorizon seen(horizon);
+  return SkylineSearch(seen, *this, options).find();
 }
 
 SkylineAnswer find_by_skyline(std::span<const HorizonTop> tops, std::span<const SkylineSummit> summits,

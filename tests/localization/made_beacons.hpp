@@ -18,6 +18,8 @@ struct BeaconSettings {
   bool named = true;
   double map_sd = 0.01;   ///< m
   double start_sd = 0.3;  ///< m
+  double offset_sd = 0;   ///< m, of the offset of each beacon's ranges
+  double max_height = 0;  ///< m above the antenna; heights are even from a third of it
 };
 
 /// A robot on a loop of about 100 m inside four beacons that measures only ranges to them. Errors are drawn
@@ -40,6 +42,10 @@ class BeaconDrive {
                                  kCorners[i][1] + random_.uniform(-5, 5), i + 1));
       map_.back().covariance = Eigen::Matrix2d::Identity() * settings.map_sd * settings.map_sd;
       real_.push_back(map_.back().at + settings.map_sd * Eigen::Vector2d(random_.normal(), random_.normal()));
+    }
+    for (std::size_t i = 0; i < settings.beacons; ++i) {
+      offsets_.push_back(settings.offset_sd > 0 ? settings.offset_sd * random_.normal() : 0);
+      heights_.push_back(settings.max_height > 0 ? settings.max_height * random_.uniform(1.0 / 3, 1) : 0);
     }
     turn_ = settings.straight ? 0 : (random_.bernoulli(0.5) ? 1 : -1) / 16.0;
     truth_ = settings.straight
@@ -70,7 +76,8 @@ class BeaconDrive {
     for (std::size_t i = 0; i < real_.size(); ++i) {
       if (random_.bernoulli(0.5)) continue;
       SeenLandmark s;
-      s.range = (real_[i] - sensor).norm() + kRangeSd * random_.normal();
+      s.range =
+          std::hypot((real_[i] - sensor).norm(), heights_[i]) + offsets_[i] + kRangeSd * random_.normal();
       s.range_sd = kRangeSd;
       if (random_.bernoulli(settings_.outliers)) *s.range += random_.uniform(1, 5);
       if (settings_.named) s.identity = map_[i].key;
@@ -81,12 +88,16 @@ class BeaconDrive {
 
   const Pose2& truth() const { return truth_; }
   const std::vector<MapLandmark>& map() const { return map_; }
+  const std::vector<Eigen::Vector2d>& real() const { return real_; }  ///< positions of the beacons
+  const std::vector<double>& offsets() const { return offsets_; }     ///< m, of their ranges
+  const std::vector<double>& heights() const { return heights_; }     ///< m above the antenna
 
  private:
   Random random_;
   BeaconSettings settings_;
   std::vector<MapLandmark> map_;
   std::vector<Eigen::Vector2d> real_;
+  std::vector<double> offsets_, heights_;
   Pose2 truth_;
   double turn_ = 0;
   int steps_ = 0;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <numbers>
 
 #include "core/error.hpp"
@@ -91,13 +92,21 @@ void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play)
 }
 
 localization::Track run_localizer(const LocalizeTask& task, localization::Localizer& localizer) {
-  return localization::replay(
+  // A search of the finder has the time of the row that it is part of.
+  const auto watch = [&task](const localization::Track& track) {
+    if (*task.search && (*task.search)->t && std::isnan(*(*task.search)->t))
+      (*task.search)->t = track.rows.back().t;
+    if (task.watch) task.watch(track);
+  };
+  localization::Track track = localization::replay(
       task.log, localizer, task.settings.play,
       localization::make_laser_detector(task.map.map.types(), task.settings.scans, task.map.map.held_types),
       [] {
         return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
       },
-      task.ground, task.watch);
+      task.ground, watch);
+  track.search = *task.search;
+  return track;
 }
 
 localization::Track FilterMethod::run(LocalizeTask& task) {

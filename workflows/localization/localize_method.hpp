@@ -62,6 +62,9 @@ struct LocalizeTask {
   localization::TrackWatcher watch = {};  ///< receives the growing track
   std::optional<TypeId> stem_type = {};   ///< type of the stems found in laser scans, if the map has one
   Callbacks callbacks = {};
+  /// Written by the finder of poses at each search.
+  std::shared_ptr<std::optional<localization::PoseSearchRecord>> search =
+      std::make_shared<std::optional<localization::PoseSearchRecord>>();
 };
 
 /// A way to localize: a file of workflows/localization/methods that defines

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "localization/detectors/detected_types.hpp"
 #include "localization/filters/locating_filter.hpp"
 #include "localization/filters/relocalizing_filter.hpp"
@@ -61,6 +63,25 @@ double search_growth(const LocalizeTask& task, double requested) {
   return by_default && !task.settings.identification.use_identities ? 1 : requested;
 }
 
+/// Returns the probability that the first of these fixes is wrong.
+template <class Fix>
+double wrong_probability(const std::vector<Fix>& fixes) {
+  std::vector<double> chances;
+  for (const Fix& fix : fixes) chances.push_back(fix.log_false_alarms);
+  return localization::wrong_probability(chances);
+}
+
+/// Keeps the last pose that was accepted, or why there is none. Its time is not known here: NaN.
+void record(std::optional<localization::PoseSearchRecord>& record,
+            const localization::PoseSearchResult& found) {
+  if (found.accepted)
+    record = {
+        .t = std::nan(""), .at = *found.accepted, .reason = {}, .wrong_probability = found.wrong_probability};
+  else if (!record || !record->t)
+    record = {
+        .t = {}, .at = {}, .reason = std::string(found.reason), .wrong_probability = found.wrong_probability};
+}
+
 struct PoseSearch {
   localization::PoseFinder find;
   localization::PoseCheck check;
@@ -100,10 +121,10 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
     const auto fix = (*known)->index.check(seen, expected.pose);
     return fix ? std::optional(fix->pose()) : std::nullopt;
   };
-  const localization::PoseFinder find = [known, open_index, skyline, ground = task.ground,
-                                         identities = task.settings.identification.use_identities,
-                                         map = task.map.map,
-                                         sensor = task.sensor](const localization::SightingSet& seen) {
+  const localization::PoseFinder search_map = [known, open_index, skyline, ground = task.ground,
+                                               identities = task.settings.identification.use_identities,
+                                               map = task.map.map,
+                                               sensor = task.sensor](const localization::SightingSet& seen) {
     if (!*known) known->emplace(open_index());
     localization::PoseSearchResult found;
     if (identities && !seen.earlier_ranges.empty()) {
@@ -112,19 +133,34 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
       if (found.accepted || seen.sightings.empty()) return found;
     }
     const auto tops = horizon_tops(seen, (*known)->top_type);
-    if (tops.size() >= 3 && ground) {
+    if (ground && (seen.horizon || tops.size() >= 3)) {
       if (!(*known)->skyline) (*known)->skyline.emplace(skyline_summits(map), ground, skyline);
-      const localization::SkylineAnswer answer = (*known)->skyline->find(tops);
+      localization::SkylineAnswer answer;
+      if (seen.horizon) answer = (*known)->skyline->find(*seen.horizon);
+      // A part of the horizon, or one with obstacles in front of it, may still have its tops.
+      if (!answer.fix && tops.size() >= 3) {
+        localization::SkylineAnswer by_tops = (*known)->skyline->find(tops);
+        if (by_tops.fix || !seen.horizon) answer = std::move(by_tops);
+      }
       if (answer.fix) found.accepted = answer.fix->at;
       for (const localization::SkylineFix& fix : answer.candidates) found.candidates.push_back(fix.at);
       found.reason = answer.reason;
-      if (found.accepted) return found;
+      found.wrong_probability = wrong_probability(answer.candidates);
+      if (found.accepted || tops.size() == seen.sightings.size()) return found;
     }
     const localization::ConstellationAnswer answer = (*known)->index.find(seen);
     if (answer.fix) found.accepted = answer.fix->pose();
     for (const localization::ConstellationFix& fix : answer.candidates)
       found.candidates.push_back(fix.pose());
     found.reason = answer.reason;
+    if (!answer.candidates.empty() && found.candidates.size() == answer.candidates.size())
+      found.wrong_probability = wrong_probability(answer.candidates);
+    return found;
+  };
+  const localization::PoseFinder find = [search_map,
+                                         searched = task.search](const localization::SightingSet& seen) {
+    localization::PoseSearchResult found = search_map(seen);
+    record(*searched, found);
     return found;
   };
   return {find, check};

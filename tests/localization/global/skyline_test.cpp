@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <Eigen/LU>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -152,6 +153,60 @@ TEST(Skyline, PlacesInThePyrenees) {
   survey("Pyrenees", c, index, o, 4, true, 0.5);
 }
 
+/// The whole horizon by marching rays, 0.25 degrees apart.
+HorizonProfile profile_of(const TerrainHeight& ground, const Pose2& robot, const SkylineOptions& o,
+                          Random& random) {
+  constexpr int kRays = 1440;
+  HorizonProfile profile{.first_angle = -std::numbers::pi,
+                         .angle_step = 2 * std::numbers::pi / kRays,
+                         .elevation_sd = 0.001,
+                         .elevations = {}};
+  const double eye = *ground(robot.at()) + o.eye;
+  for (int i = 0; i < kRays; ++i) {
+    const double a = robot.yaw + profile.first_angle + i * profile.angle_step;
+    double highest = -2;
+    for (double t = 60; t < o.reach; t += 50 + 0.002 * t)
+      if (const auto h = ground(robot.at() + t * Eigen::Vector2d(std::cos(a), std::sin(a))))
+        highest = std::max(highest, (*h - curvature_drop(t, o.body_radius, o.refraction) - eye) / t);
+    const double seen = std::atan(highest) + profile.elevation_sd * random.normal();
+    profile.elevations.push_back(random.bernoulli(0.02) ? std::nanf("") : static_cast<float>(seen));
+  }
+  return profile;
+}
+
+TEST(Skyline, TheWholeHorizonLocatesInTheAndes) {
+  if (!std::filesystem::exists(dems())) GTEST_SKIP() << dems() << " is not on this machine";
+  const Country c = country("earth/S33W071.tif", "expected/prominence20_S33W071.txt", 40, -71, -33);
+  const SkylineOptions o{.body_radius = 6371000, .refraction = 0.13, .eye = 2};
+  const SkylineIndex index(c.summits, std::ref(c.ground), o);
+  Random random(15, "the whole horizon");
+  constexpr int kTries = 3;
+  int right = 0, mirrored = 0;
+  double sum = 0;
+  for (int i = 0; i < kTries;) {
+    const Pose2 robot{random.uniform(0.2, 0.8) * c.ground.width(),
+                      random.uniform(0.2, 0.8) * c.ground.depth(), random.uniform(-3.1, 3.1)};
+    if (!c.ground(robot.at())) continue;
+    ++i;
+    HorizonProfile seen = profile_of(std::cref(c.ground), robot, o, random);
+    const SkylineAnswer answer = index.find(seen);
+    if (i == 1) {  // what no position shows
+      std::ranges::reverse(seen.elevations);
+      mirrored += index.find(seen).fix.has_value();
+    }
+    if (!answer.fix) continue;
+    const PoseEstimate& at = answer.fix->at;
+    EXPECT_LT((at.pose.at() - robot.at()).norm(), 100);
+    ++right;
+    Eigen::Vector3d off = at.pose.vector() - robot.vector();
+    off.z() = wrap_angle(off.z());
+    sum += off.dot(at.covariance.inverse() * off) / 3;
+  }
+  EXPECT_GE(right, kTries - 1);
+  EXPECT_EQ(mirrored, 0);
+  EXPECT_LT(sum / right, 3);  // 9 degrees of freedom: 1 +- 0.47, and errors of the covariance
+}
+
 /// Cones on a plain: everything is known.
 struct Cones {
   std::vector<SkylineSummit> summits;
@@ -232,6 +287,21 @@ TEST(Skyline, FindsThePlaceByBearingsAndElevations) {
   }
 }
 
+TEST(Skyline, AFlatOrNarrowHorizonIsUnknown) {
+  const Cones c = cones();
+  const SkylineOptions o{.body_radius = 1737400};
+  const SkylineIndex index(c.summits, c, o);
+  HorizonProfile flat{.first_angle = 0, .angle_step = 0.01, .elevation_sd = 0.001, .elevations = {}};
+  EXPECT_EQ(index.find(flat).reason, "too little of the horizon is known");
+  flat.elevations.assign(628, 0.001F);
+  EXPECT_EQ(index.find(flat).reason, "too little of the horizon is known");
+  Random random(8);
+  for (float& e : flat.elevations) e = static_cast<float>(random.uniform(0, 0.1));
+  EXPECT_FALSE(index.find(flat).fix);
+  flat.elevations.resize(150);
+  EXPECT_EQ(index.find(flat).reason, "too little of the horizon is known");
+}
+
 TEST(Skyline, ForeignHorizonsAreUnknown) {
   const Cones c = cones();
   SkylineOptions o{.body_radius = 1737400};
@@ -243,7 +313,7 @@ TEST(Skyline, ForeignHorizonsAreUnknown) {
       tops.push_back({.bearing = random.uniform(-3.1, 3.1), .elevation = random.uniform(0.005, 0.08)});
     EXPECT_FALSE(index.find(tops).fix);
   }
-  EXPECT_EQ(index.find({}).reason, "too few tops on the horizon");
+  EXPECT_EQ(index.find(std::span<const HorizonTop>{}).reason, "too few tops on the horizon");
   EXPECT_EQ(find_by_skyline(std::vector<HorizonTop>(4), {}, c, o).reason, "too few summits in the map");
 }
 
