@@ -195,6 +195,24 @@ class Results : public testing::Test {
     EXPECT_EQ(peaks["landmarks"]["mountain_top"], 2);
   }
 
+  /// Five detections are too few to be located among 200 craters of the Moon.
+  void check_locate() {
+    Random random(5, "results of locate");
+    std::string craters = "x,y,radius\n", seen = "x,y,diameter\n";
+    for (int i = 0; i < 200; ++i)
+      craters += std::to_string(random.uniform(-180, 180)) + "," + std::to_string(random.uniform(-80, 80)) +
+                 "," + std::to_string(random.uniform(2'000, 50'000)) + "\n";
+    for (int i = 0; i < 5; ++i)
+      seen += std::to_string(random.uniform(0, 500)) + "," + std::to_string(random.uniform(0, 500)) + "," +
+              std::to_string(random.uniform(10, 60)) + "\n";
+    write_text(folder_ / "seen.csv", seen);
+    const std::string map = import_table("moon", craters, "crater", "IAU_2015:30100");
+    const Json places = result({"locate", map, folder_ / "seen.csv", "--size", "500", "500"});
+    EXPECT_EQ(places["craters"], 200);
+    EXPECT_EQ(places["located"], 0);
+    EXPECT_EQ(places["places"][0]["detected"], 5);
+  }
+
   /// A map of all craters of a catalogue, moved by 5 km and turned by a right angle.
   void check_register() {
     Random random(3, "results");
@@ -231,7 +249,7 @@ class Results : public testing::Test {
 TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   for (const char* command :
        {"localize", "web", "merge", "edit", "stac", "report", "hazards", "register", "import", "map", "view",
-        "train", "route", "observability", "simulate", "restore", "reconstruct"})
+        "train", "route", "observability", "simulate", "restore", "reconstruct", "locate"})
     EXPECT_TRUE(declared_.contains(command)) << command;
   check_import();
   check_merge_and_edit();
@@ -239,6 +257,7 @@ TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   check_files();
   check_hazards_and_peaks();
   check_register();
+  check_locate();
   check_drives();
   check_scenes();
   for (const auto& [command, keys] : declared_)
