@@ -86,7 +86,7 @@ TimeTaken time_taken(GDALDataset& dataset, const std::string& time_zone) {
   if (!taken.utc) taken.local = time;
   taken.clock = time.empty() ? taken.utc : utc_seconds(time + "Z");
   double fraction = 0;
-  if (const std::string digits = item(dataset, "EXIF_SubSecTimeOriginal");
+  if (const std::string digits = item(dataset, "EXIF_SubSecTime_Original");
       taken.clock && !time.empty() && !digits.empty() && parse_number("0." + digits, fraction))
     *taken.clock += fraction;
   return taken;
