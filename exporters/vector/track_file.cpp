@@ -16,6 +16,7 @@
 #include "core/output_error.hpp"
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "geo/point_at_height.hpp"
 #include "geodb/replace_map.hpp"
 
 namespace waymark::exporters {
@@ -41,7 +42,10 @@ bool knows_wrong_matches(const localization::Track& track) {
 Values values_of(const localization::TrackRow& row, const LocalFrame* frame, bool wrong_known) {
   const Eigen::Matrix3d& c = row.at.covariance;
   Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
-  if (frame) at = frame->crs_from_map_frame({at}).xyz;
+  // z is a height where the terrain is known, else 0.
+  if (frame)
+    at =
+        at.z() != 0 ? point_at_height(*frame, at.head<2>(), at.z()).xyz : frame->crs_from_map_frame({at}).xyz;
   return {row.t,
           at.x(),
           at.y(),

@@ -95,8 +95,16 @@ class DemTiles {
       to_dem_ = std::make_shared<CrsTransform>(map_crs, dem_->geometry().where.crs);
   }
 
+  // The ground does not lie on the tangent plane: at its height the vertical has left the point of the plane.
   std::optional<double> operator()(const Eigen::Vector2d& place) {
-    const auto at = frame_.crs_from_map_frame({{place.x(), place.y(), 0}}).xyz;
+    const Eigen::Vector3d plane = frame_.crs_from_map_frame({{place.x(), place.y(), 0}}).xyz;
+    const auto height = height_at(plane);
+    if (!height || frame_.crs().kind() == CrsKind::local) return height;
+    return height_at(frame_.crs_from_map_frame({{place.x(), place.y(), *height - plane.z()}}).xyz);
+  }
+
+ private:
+  std::optional<double> height_at(const Eigen::Vector3d& at) {
     CrsTransform::XY in_dem{at.x(), at.y()};
     if (to_dem_) in_dem = (*to_dem_)(at.x(), at.y());
     const GridGeometry& g = dem_->geometry();
@@ -111,7 +119,6 @@ class DemTiles {
     return h;
   }
 
- private:
   static constexpr std::int64_t kTile = 512;
 
   double cell(std::int64_t column, std::int64_t row) {

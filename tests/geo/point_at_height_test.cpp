@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "geo/point_at_height.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/random.hpp"
+
+namespace waymark::test {
+namespace {
+
+TEST(PointAtHeight, IsTheInverseOfTheMapFrameOnMountains) {
+  Random random(5, "points at heights");
+  double aside_of_plane = 0;
+  for (const auto& [crs, lon, lat] :
+       {std::tuple("EPSG:4326", -70.5, -32.5), std::tuple("EPSG:4326", 7.9, 46.4),
+        std::tuple("IAU_2015:49900", 77.4, 18.4)}) {
+    const LocalFrame frame(Crs::from_text(crs), {{lon, lat, 0}});
+    for (int i = 0; i < 100; ++i) {
+      const Point<MapCrs> there{
+          {lon + random.uniform(-0.5, 0.5), lat + random.uniform(-0.5, 0.5), random.uniform(-3000, 6000)}};
+      const Eigen::Vector2d place = frame.map_frame_from_crs(there).xyz.head<2>();
+      const Eigen::Vector3d found = point_at_height(frame, place, there.xyz.z()).xyz;
+      const double metres = 111'000;  // per degree, at most
+      EXPECT_LT((found - there.xyz).head<2>().norm() * metres, 0.02);
+      EXPECT_NEAR(found.z(), there.xyz.z(), 1.5);
+      const Eigen::Vector3d plane = frame.crs_from_map_frame({{place.x(), place.y(), 0}}).xyz;
+      aside_of_plane = std::max(aside_of_plane, (plane - there.xyz).head<2>().norm() * metres);
+    }
+  }
+  EXPECT_GT(aside_of_plane, 30);
+}
+
+TEST(PointAtHeight, IsATranslationInALocalCrs) {
+  const LocalFrame frame(Crs::local(), {{100, 200, 0}});
+  EXPECT_EQ(point_at_height(frame, {3, 4}, 7).xyz, Eigen::Vector3d(103, 204, 7));
+}
+
+}  // namespace
+}  // namespace waymark::test
