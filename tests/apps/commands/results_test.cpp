@@ -16,42 +16,45 @@
 namespace waymark::test {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using ResultObject = nlohmann::ordered_json;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-bool fits(const Json& value, const std::string& kind) {
+bool fits(const ResultObject& value, const std::string& kind) {
   const auto all = [&](auto test) { return std::ranges::all_of(value, test); };
   if (value.is_null()) return true;
   if (kind == "text") return value.is_string();
   if (kind == "flag") return value.is_boolean();
   if (kind == "integer") return value.is_number_integer();
   if (kind == "number") return value.is_number();
-  if (kind == "texts") return value.is_array() && all([](const Json& one) { return one.is_string(); });
+  if (kind == "texts")
+    return value.is_array() && all([](const ResultObject& one) { return one.is_string(); });
   if (kind == "counts")
-    return value.is_object() && all([](const Json& one) { return one.is_number_integer(); });
+    return value.is_object() && all([](const ResultObject& one) { return one.is_number_integer(); });
   if (kind == "object") return value.is_object();
-  if (kind == "objects") return value.is_array() && all([](const Json& one) { return one.is_object(); });
+  if (kind == "objects")
+    return value.is_array() && all([](const ResultObject& one) { return one.is_object(); });
   return false;
 }
 
 class Results : public testing::Test {
  protected:
   /// Runs a command with `--format json` and returns what it prints, which has the declared keys in order.
-  Json result(std::vector<std::string> words) {
+  ResultObject result(std::vector<std::string> words) {
     words.insert(words.end(), {"--format", "json"});
     const Outcome said = waymark(words);
     EXPECT_EQ(said.code, 0) << words[0] << ": " << said.err;
-    Json object = Json::parse(said.out, nullptr, false);
+    ResultObject object = ResultObject::parse(said.out, nullptr, false);
     EXPECT_TRUE(object.is_object()) << words[0] << " printed: " << said.out;
     std::vector<std::string> names;
     for (const auto& [name, value] : object.items()) names.push_back(name);
-    const Json& keys = declared_.at(words[0]);
+    const ResultObject& keys = declared_.at(words[0]);
     std::vector<std::string> expected;
-    for (const Json& key : keys) {
+    for (const ResultObject& key : keys) {
       expected.push_back(key["name"]);
       EXPECT_TRUE(object.contains(expected.back()) && fits(object[expected.back()], key["kind"]))
-          << words[0] << ": " << expected.back() << " = " << object.value(expected.back(), Json()).dump();
+          << words[0] << ": " << expected.back() << " = "
+          << object.value(expected.back(), ResultObject()).dump();
     }
     EXPECT_EQ(names, expected) << words[0];
     seen_.insert(keys);
@@ -62,7 +65,7 @@ class Results : public testing::Test {
                            const std::string& crs = "local") {
     write_text(folder_ / (name + ".csv"), table);
     const std::string map = folder_ / (name + ".gpkg");
-    const Json made =
+    const ResultObject made =
         result({"import", folder_ / (name + ".csv"), "--type", type, "--map-crs", crs, "-o", map});
     EXPECT_EQ(made["map"], map);
     return map;
@@ -70,26 +73,26 @@ class Results : public testing::Test {
 
   void check_import() {
     write_text(folder_ / "bad.csv", "x,y,radius\n1,2,0.5\n3,,0.5\n4,5,-7\n");
-    const Json made = result(
+    const ResultObject made = result(
         {"import", folder_ / "bad.csv", "--type", "rock", "--map-crs", "local", "-o", folder_ / "bad.gpkg"});
     EXPECT_EQ(made["landmarks"], 1);
     EXPECT_EQ(made["rows"], 3);
     EXPECT_EQ(made["rejected"].size(), 2u);
-    EXPECT_EQ(made["types"], Json({"rock"}));
+    EXPECT_EQ(made["types"], ResultObject({"rock"}));
     EXPECT_THAT(made["first_rejection"].get<std::string>(), HasSubstr("bad.csv"));
   }
 
   void check_merge_and_edit() {
     const std::string a = import_table("a", "uid,x,y,radius\nr1,10,20,0.5\nr2,30,20,0.8\n", "rock");
     const std::string b = import_table("b", "uid,x,y,radius\nr3,50,20,0.6\n", "rock");
-    const Json merged = result({"merge", a, b, "-o", folder_ / "ab.gpkg"});
+    const ResultObject merged = result({"merge", a, b, "-o", folder_ / "ab.gpkg"});
     EXPECT_EQ(merged["maps"], 2);
     EXPECT_EQ(merged["landmarks"], 3);
     EXPECT_EQ(merged["identical"], 0);
-    const Json edited = result({"edit", folder_ / "ab.gpkg", "reject", "r1", "r3"});
+    const ResultObject edited = result({"edit", folder_ / "ab.gpkg", "reject", "r1", "r3"});
     EXPECT_EQ(edited["action"], "reject");
-    EXPECT_EQ(edited["landmarks"], Json({"r1", "r3"}));
-    const Json restored = result({"restore", folder_ / "ab.gpkg"});
+    EXPECT_EQ(edited["landmarks"], ResultObject({"r1", "r3"}));
+    const ResultObject restored = result({"restore", folder_ / "ab.gpkg"});
     EXPECT_EQ(restored["map"], folder_ / "ab.gpkg");
     EXPECT_FALSE(std::filesystem::exists(restored["backup"].get<std::string>()));
     EXPECT_THAT(waymark({"query", folder_ / "ab.gpkg", "--format", "csv"}).out, HasSubstr("r3,"));
@@ -100,40 +103,42 @@ class Results : public testing::Test {
     const std::string map = import_table("plain", rocks_csv(), "rock");
     const std::string log = folder_ / "plain.jsonl";
     write_text(log, drive_log({.named = true}));
-    const Json made = result({"map", log, "-o", folder_ / "made.gpkg"});
+    const ResultObject made = result({"map", log, "-o", folder_ / "made.gpkg"});
     EXPECT_EQ(made["crs"], "local");
     EXPECT_GT(made["landmarks"]["rock"], 5);
     EXPECT_GT(made["sightings"], made["looks"]);
-    const Json page = result({"view", map, "--log", log, "-o", folder_ / "v.html"});
+    const ResultObject page = result({"view", map, "--log", log, "-o", folder_ / "v.html"});
     EXPECT_EQ(page["bytes"], std::filesystem::file_size(folder_ / "v.html"));
     EXPECT_EQ(page["landmarks"]["rock"], made_rocks().size());
     EXPECT_EQ(page["tracks"], 1);
-    const Json sensor = result({"train", "sensor", log, "--map", map, "-o", folder_ / "mine.json"});
+    const ResultObject sensor = result({"train", "sensor", log, "--map", map, "-o", folder_ / "mine.json"});
     EXPECT_EQ(sensor["what"], "sensor");
     EXPECT_THAT(sensor["trained_on"].get<std::string>(), HasSubstr("1 log"));
-    const Json route = result({"route", map, "--from", "0,0", "--to", "8,6", "--sensor", "horizontal_laser",
-                               "--limit-sigma", "1", "-o", folder_ / "route.csv"});
+    const ResultObject route =
+        result({"route", map, "--from", "0,0", "--to", "8,6", "--sensor", "horizontal_laser", "--limit-sigma",
+                "1", "-o", folder_ / "route.csv"});
     const std::string rows = text_of(folder_ / "route.csv");
     EXPECT_EQ(route["routes"][0]["stations"], std::ranges::count(rows, '\n') - 1);
     EXPECT_GE(route["routes"][0]["length_m"], route["lower_bound_m"]);
     EXPECT_GE(route["shortest"]["length_m"], 10);
-    const Json info = result({"observability", map, "-o", folder_ / "i.tif", "--sensor", "horizontal_laser"});
+    const ResultObject info =
+        result({"observability", map, "-o", folder_ / "i.tif", "--sensor", "horizontal_laser"});
     EXPECT_GT(info["columns"], 0);
     EXPECT_GT(info["median_sd_m"], 0);
   }
 
   void check_scenes() {
     write_text(folder_ / "hall.json", R"({"waymark_scenario": 1, "hall": {}})");
-    const Json hall = result({"simulate", folder_ / "hall.json", "-o", folder_ / "hall"});
+    const ResultObject hall = result({"simulate", folder_ / "hall.json", "-o", folder_ / "hall"});
     EXPECT_GT(hall["town_landmarks"], 10);
     EXPECT_EQ(hall["rocks"], 0);
     const auto site = simulate_flight(folder_.path(), {.pixels = 160});
     const std::string cameras = site / "truth/cameras.json", images = site / "images";
-    const Json poses =
+    const ResultObject poses =
         result({"reconstruct", images, "--cameras", cameras, "-o", folder_ / "poses", "--until", "poses"});
     EXPECT_EQ(poses["images"], 6);
     EXPECT_TRUE(poses["cells"].is_null() && poses["map"].is_null());
-    const Json dem =
+    const ResultObject dem =
         result({"reconstruct", images, "--cameras", cameras, "-o", folder_ / "site", "--until", "dem"});
     EXPECT_GT(dem["measured"], 0);
     EXPECT_GE(dem["cells"], dem["measured"]);
@@ -143,7 +148,7 @@ class Results : public testing::Test {
     const std::string map = import_table("rocks", rocks_csv(), "rock");
     const std::string log = folder_ / "log.jsonl", track = folder_ / "track.csv";
     write_text(log, drive_log({.named = true}));
-    const Json done = result({"localize", map, log, "-o", track, "--set", "start_sd=0.2"});
+    const ResultObject done = result({"localize", map, log, "-o", track, "--set", "start_sd=0.2"});
     EXPECT_EQ(done["track"], track);
     const std::string rows = text_of(track);
     EXPECT_EQ(done["rows"], std::ranges::count(rows, '\n') - 1);
@@ -153,27 +158,28 @@ class Results : public testing::Test {
     EXPECT_EQ(done["settings"]["start_sd"], 0.2);
     EXPECT_TRUE(done["chi2"].is_null() && done["first_lost_s"].is_null() && done["map"].is_null());
     // What `graph` prints on standard output is in the object.
-    const Json graph = result({"localize", map, log, "-o", track, "--method", "graph"});
+    const ResultObject graph = result({"localize", map, log, "-o", track, "--method", "graph"});
     EXPECT_GT(graph["residuals"], 100);
     EXPECT_EQ(graph["converged"], true);
-    const Json settings = result({"localize", "--settings", "--method", "pf"});
+    const ResultObject settings = result({"localize", "--settings", "--method", "pf"});
     EXPECT_TRUE(settings["settings"].contains("particles") && settings["track"].is_null());
   }
 
   void check_files() {
     const std::string map = import_table(
         "site", "uid,x,y,radius,confidence\nr1,10,20,0.5,1\nr2,30,20,0.8,1\n", "rock", "EPSG:32632");
-    const Json report = result({"report", map, "-o", folder_ / "r.html", "--truth", folder_ / "site.csv"});
+    const ResultObject report =
+        result({"report", map, "-o", folder_ / "r.html", "--truth", folder_ / "site.csv"});
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(folder_ / "r.html"));
     EXPECT_EQ(report["checks"][0]["type"], "rock");
     EXPECT_THAT(result({"report", map, "-o", folder_ / "r.html"})["checks"], IsEmpty());
-    const Json item = result({"stac", map, "-o", folder_ / "item.json"});
-    EXPECT_EQ(item["items"], Json({folder_ / "item.json"}));
+    const ResultObject item = result({"stac", map, "-o", folder_ / "item.json"});
+    EXPECT_EQ(item["items"], ResultObject({folder_ / "item.json"}));
     EXPECT_TRUE(item["collection"].is_null());
-    const Json records = result({"stac", map, "-o", folder_ / "catalogue"});
-    EXPECT_EQ(records["items"], Json({folder_ / "catalogue/site.json"}));
+    const ResultObject records = result({"stac", map, "-o", folder_ / "catalogue"});
+    EXPECT_EQ(records["items"], ResultObject({folder_ / "catalogue/site.json"}));
     EXPECT_EQ(records["id"], "catalogue");
-    const Json web = result({"web", map, "-o", folder_ / "web", "--max-zoom", "3"});
+    const ResultObject web = result({"web", map, "-o", folder_ / "web", "--max-zoom", "3"});
     EXPECT_EQ(web["landmarks"], 2);
     EXPECT_EQ(web["max_zoom"], 3);
     EXPECT_EQ(web["has_library"], false);
@@ -183,14 +189,14 @@ class Results : public testing::Test {
     MadeDem dem{.columns = 40, .rows = 40, .geotransform = {500000, 0.5, 0, 5200000, 0, -0.5}};
     dem.height = [](int column, int) { return column < 20 ? 0.0 : 3.0; };
     const std::string file = make_dem(folder_ / "dem.tif", dem);
-    const Json hazards = result({"hazards", file, "-o", folder_ / "h.tif", "--rock-cover", "0.1"});
+    const ResultObject hazards = result({"hazards", file, "-o", folder_ / "h.tif", "--rock-cover", "0.1"});
     EXPECT_EQ(hazards["rock_cover"], 0.1);
     EXPECT_GT(hazards["cells"]["hazard"], 0);
     std::int64_t cells = 0;
     for (const auto& [name, count] : hazards["cells"].items()) cells += count.get<std::int64_t>();
     EXPECT_EQ(cells, 40 * 40);
     EXPECT_TRUE(result({"hazards", file, "-o", folder_ / "h.tif"})["rock_cover"].is_null());
-    const Json peaks =
+    const ResultObject peaks =
         result({"peaks", make_dem(folder_ / "peaks.tif", twin_peaks()), "-o", folder_ / "p.gpkg"});
     EXPECT_EQ(peaks["landmarks"]["mountain_top"], 2);
   }
@@ -207,7 +213,7 @@ class Results : public testing::Test {
               std::to_string(random.uniform(10, 60)) + "\n";
     write_text(folder_ / "seen.csv", seen);
     const std::string map = import_table("moon", craters, "crater", "IAU_2015:30100");
-    const Json places = result({"locate", map, folder_ / "seen.csv", "--size", "500", "500"});
+    const ResultObject places = result({"locate", map, folder_ / "seen.csv", "--size", "500", "500"});
     EXPECT_EQ(places["craters"], 200);
     EXPECT_EQ(places["located"], 0);
     EXPECT_EQ(places["places"][0]["detected"], 5);
@@ -225,8 +231,8 @@ class Results : public testing::Test {
     }
     write_text(folder_ / "catalogue.csv", catalogue);
     const std::string map = import_table("rough", rough, "crater");
-    const Json placed = result({"register", map, "--to", folder_ / "catalogue.csv", "--crs", "EPSG:32632",
-                                "-o", folder_ / "placed.gpkg"});
+    const ResultObject placed = result({"register", map, "--to", folder_ / "catalogue.csv", "--crs",
+                                        "EPSG:32632", "-o", folder_ / "placed.gpkg"});
     EXPECT_EQ(placed["crs"], "EPSG:32632");
     EXPECT_EQ(placed["agreed"], 60);
     EXPECT_NEAR(placed["scale"], 1, 1e-3);
@@ -236,14 +242,14 @@ class Results : public testing::Test {
   }
 
   Results() {
-    const Json all = Json::parse(waymark({"help", "--format", "json"}).out);
-    for (const Json& command : all["commands"])
+    const ResultObject all = ResultObject::parse(waymark({"help", "--format", "json"}).out);
+    for (const ResultObject& command : all["commands"])
       if (!command["result"].empty()) declared_[command["name"]] = command["result"];
   }
 
   TempFolder folder_;
-  std::map<std::string, Json> declared_;
-  std::set<Json> seen_;
+  std::map<std::string, ResultObject> declared_;
+  std::set<ResultObject> seen_;
 };
 
 TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
