@@ -18,10 +18,10 @@ SPELLED = {
     "run": {"set": "settings", "shard": None, "format": None, "confined": None},
     "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs",
                  "format": None},
-    "route": {"from": "start", "to": "goal"},
+    "route": {"from": "start", "to": "goal", "ids": "identities_known", "format": None},
     "hazards": {"format": None},
-    "reconstruct": {"output": "folder", "map-landmarks": "map", "map": "map_image"},
-    "simulate": {"output": "folder"},
+    "reconstruct": {"output": "folder", "map-landmarks": "map", "map": "map_image", "format": None},
+    "simulate": {"output": "folder", "format": None},
     "evaluate": {"format": None},
 }
 
