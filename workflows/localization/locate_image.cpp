@@ -5,13 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <numbers>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
-#include "core/output_error.hpp"
+#include "exporters/formatting.hpp"
 #include "geo/crs.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/tables/table.hpp"
@@ -84,7 +84,7 @@ std::optional<std::size_t> column(const importers::TableHeader& header, const st
 }
 
 Detections read_detections(const std::string& file, const LocateRequest& request) {
-  const auto table = importers::open_table(file, importers::TableFormat::by_name, "", "crater");
+  const auto table = importers::open_table(file, importers::TableFormat::by_name, "", "");
   const importers::TableHeader& header = table->header();
   const auto x = column(header, "x"), y = column(header, "y"), diameter = column(header, "diameter"),
              radius = column(header, "radius");
@@ -170,22 +170,13 @@ std::string text_of(const LocatedImage& image) {
                             image.matched, image.detected, image.residual_px, image.wrong_probability);
 }
 
-void write_text_file(const std::string& file, const std::string& text) {
-  AtomicFile aside(file);
-  std::ofstream out(aside.path(), std::ios::binary);
-  out << text;
-  out.close();
-  if (!out) fail_output(file, "the file cannot be written");
-  aside.commit();
-}
-
 std::string places_csv(const LocateResult& result) {
   std::string text =
       "detections,located,lon,lat,metres_per_pixel,azimuth_deg,tilt_x_deg,tilt_y_deg,camera_lon,camera_lat,"
       "altitude_m,var_east,var_north,cov_east_north,scale_sd,azimuth_sd_deg,matched,detected,residual_px,"
       "wrong_probability,reason\n";
   for (const LocatedImage& i : result.images) {
-    text += i.detections + (i.located ? ",1" : ",0");
+    text += exporters::csv_text(i.detections) + (i.located ? ",1" : ",0");
     if (i.located) {
       text +=
           fmt::format(",{:.9f},{:.9f},{:.8g},{:.5f},{:.5f},{:.5f}", i.middle.lon, i.middle.lat,
@@ -199,7 +190,7 @@ std::string places_csv(const LocateResult& result) {
       text += ",,,,,,,,,,,,,,";
     }
     text += fmt::format(",{},{},{:.4g},{:.4g},{}\n", i.matched, i.detected, i.residual_px,
-                        i.wrong_probability, i.reason);
+                        i.wrong_probability, exporters::csv_text(i.reason));
   }
   return text;
 }
@@ -232,10 +223,22 @@ CraterSearchOptions search_options(const LocateRequest& request, const Callbacks
   return options;
 }
 
+/// Throws Error{usage} for an output that is an input.
+void check_outputs(const LocateRequest& request) {
+  std::vector<std::string> inputs = request.detections;
+  inputs.push_back(request.map);
+  for (const std::string& output : {request.output, request.matches})
+    for (const std::string& input : inputs)
+      if (std::error_code missing; !output.empty() && std::filesystem::equivalent(output, input, missing))
+        throw Error(ErrorCode::usage, fmt::format("the result would replace {}", input), output,
+                    "name another file");
+}
+
 }  // namespace
 
 LocateResult locate_images(const LocateRequest& request, const Callbacks& callbacks) {
   const CraterSearchOptions options = search_options(request, callbacks);
+  check_outputs(request);
   const CraterMap map = read_craters(request);
   const localization::CraterIndex index(map.craters, map.body, options);
   const localization::BodySurface surface(map.body);
@@ -251,10 +254,11 @@ LocateResult locate_images(const LocateRequest& request, const Callbacks& callba
     if (answer.fix)
       for (std::size_t i = 0; i < seen.craters.size(); ++i)
         if (const auto crater = answer.fix->craters[i])
-          matches += fmt::format("{},{},{}\n", file, seen.rows[i], map.uids[*crater]);
+          matches += fmt::format("{},{},{}\n", exporters::csv_text(file), seen.rows[i],
+                                 exporters::csv_text(map.uids[*crater]));
   }
-  if (!request.output.empty()) write_text_file(request.output, places_csv(result));
-  if (!request.matches.empty()) write_text_file(request.matches, matches);
+  if (!request.output.empty()) write_file(request.output, places_csv(result));
+  if (!request.matches.empty()) write_file(request.matches, matches);
   return result;
 }
 
