@@ -32,7 +32,7 @@ struct JoinMountainTops {
   static StageSpec spec() {
     return {.name = "join_mountain_tops",
             .summary = "Joins the tiles: exact prominence, key saddle and parent of each summit",
-            .version = 2,
+            .version = 3,
             .scope = Scope::map,
             .inputs = {dem, divide_tree, block_relief_in},
             .outputs = {summits, relief}};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "pipeline/terrain/codecs.hpp"
 
+#include <stdexcept>
+
 #include "core/bytes.hpp"
 
 namespace waymark::pipeline {
@@ -104,22 +106,40 @@ BlockRelief Codec<BlockRelief>::decode(std::string_view bytes) {
   return relief;
 }
 
-// Stores the finest level as the relief of a single tile; the others are computed from it.
+// Stores the finest level row by row, so that no copy of the whole is needed; the others are computed from
+// it.
 std::string Codec<ReliefPyramid>::encode(const ReliefPyramid& pyramid) {
   ByteWriter out;
-  out(pyramid.columns()), out(pyramid.rows()), out(Codec<BlockRelief>::encode(pyramid.finest()));
+  out(pyramid.columns()), out(pyramid.rows());
+  const std::int64_t rows = pyramid.finest_rows();
+  for (std::int64_t r = 0; r < rows; ++r) {
+    const BlockRelief row = pyramid.finest_row(r);
+    out(std::vector<float>(row.highest.begin(), row.highest.end())), out(row.voids);
+  }
   return out.take();
 }
 
 ReliefPyramid Codec<ReliefPyramid>::decode(std::string_view bytes) {
   ByteReader in(bytes);
   const auto columns = in.get<std::int64_t>(), rows = in.get<std::int64_t>();
-  std::string finest;
-  in(finest);
+  const double blocks =
+      static_cast<double>(columns) * static_cast<double>(rows) / (kReliefBlock * kReliefBlock);
+  if (columns < 0 || rows < 0 || blocks > static_cast<double>(bytes.size()))
+    throw std::runtime_error("artifact has a relief larger than itself");
+  ReliefPyramid pyramid(columns, rows);
+  std::vector<float> highest;
+  BlockRelief row;
+  for (std::int64_t r = 0; r < pyramid.finest_rows(); ++r) {
+    in(highest), in(row.voids);
+    row.highest.assign(highest.begin(), highest.end());
+    row.blocks = {0, r, std::ssize(row.highest), 1};
+    if (row.voids.size() != row.highest.size() || row.blocks.columns != pyramid.finest_columns())
+      throw std::runtime_error("artifact has a row of another length");
+    pyramid.add(row);
+  }
   in.expect_end();
-  const std::shared_ptr<const BlockRelief> whole[] = {
-      std::make_shared<const BlockRelief>(Codec<BlockRelief>::decode(finest))};
-  return {whole, columns, rows};
+  pyramid.build_levels();
+  return pyramid;
 }
 
 std::string Codec<std::vector<Summit>>::encode(const std::vector<Summit>& summits) {

@@ -2,12 +2,22 @@
 #include "pipeline/terrain/relief_pyramid.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace waymark::pipeline {
 namespace {
 
+constexpr float kNone = static_cast<float>(kNoHeight);
+
 std::int64_t blocks_for(std::int64_t cells) {
   return (cells + kReliefBlock - 1) / kReliefBlock;
+}
+
+float rounded_up(double height) {
+  const auto near = static_cast<float>(height);
+  return static_cast<double>(near) < height ? std::nextafter(near, std::numeric_limits<float>::infinity())
+                                            : near;
 }
 
 }  // namespace
@@ -47,7 +57,7 @@ ReliefPyramid::ReliefPyramid(std::span<const std::shared_ptr<const BlockRelief>>
 }
 
 ReliefPyramid::ReliefPyramid(std::int64_t columns, std::int64_t rows) : columns_(columns), rows_(rows) {
-  highest_.emplace_back(blocks_for(columns), blocks_for(rows), kNoHeight);
+  highest_.emplace_back(blocks_for(columns), blocks_for(rows), kNone);
   voids_.emplace_back(blocks_for(columns), blocks_for(rows), std::uint8_t{0});
 }
 
@@ -55,8 +65,8 @@ void ReliefPyramid::add(const BlockRelief& tile) {
   for (std::int64_t r = 0; r < tile.blocks.rows; ++r)
     for (std::int64_t c = 0; c < tile.blocks.columns; ++c) {
       const auto at = static_cast<std::size_t>(r * tile.blocks.columns + c);
-      double& highest = highest_[0](tile.blocks.column + c, tile.blocks.row + r);
-      highest = std::max(highest, tile.highest[at]);
+      float& highest = highest_[0](tile.blocks.column + c, tile.blocks.row + r);
+      highest = std::max(highest, rounded_up(tile.highest[at]));
       voids_[0](tile.blocks.column + c, tile.blocks.row + r) |= tile.voids[at];
     }
 }
@@ -65,7 +75,7 @@ void ReliefPyramid::build_levels() {
   while (highest_.back().columns() > 1 || highest_.back().rows() > 1) {
     const auto& fine = highest_.back();
     const auto& fine_voids = voids_.back();
-    Grid<double> coarse((fine.columns() + 1) / 2, (fine.rows() + 1) / 2, kNoHeight);
+    Grid<float> coarse((fine.columns() + 1) / 2, (fine.rows() + 1) / 2, kNone);
     Grid<std::uint8_t> coarse_voids(coarse.columns(), coarse.rows(), std::uint8_t{0});
     for (std::int64_t r = 0; r < fine.rows(); ++r)
       for (std::int64_t c = 0; c < fine.columns(); ++c) {
@@ -77,12 +87,14 @@ void ReliefPyramid::build_levels() {
   }
 }
 
-BlockRelief ReliefPyramid::finest() const {
-  const auto highest = highest_[0].cells();
-  const auto voids = voids_[0].cells();
-  return {{0, 0, highest_[0].columns(), highest_[0].rows()},
-          {highest.begin(), highest.end()},
-          {voids.begin(), voids.end()}};
+BlockRelief ReliefPyramid::finest_row(std::int64_t row) const {
+  const std::int64_t columns = highest_[0].columns();
+  BlockRelief one{{0, row, columns, 1}, {}, {}};
+  for (std::int64_t c = 0; c < columns; ++c) {
+    one.highest.push_back(static_cast<double>(highest_[0](c, row)));
+    one.voids.push_back(voids_[0](c, row));
+  }
+  return one;
 }
 
 Window ReliefPyramid::cells(const Block& b) const {

@@ -33,7 +33,8 @@ bool is_hidden(std::int64_t column, std::int64_t row, double hidden_above, auto&
 BlockRelief block_relief(const HeightWindow& heights, const Window& owned, double hidden_above);
 
 /// Pyramid of highest cells: level 0 has blocks of kReliefBlock cells, each further level doubles them up to
-/// a single block. About 0.05 bytes per cell of the grid.
+/// a single block. Heights are rounded up to float: a block may be searched in vain, never left out. About
+/// 0.03 bytes per cell of the grid.
 class ReliefPyramid {
  public:
   ReliefPyramid() = default;
@@ -52,7 +53,7 @@ class ReliefPyramid {
     int level = 0;
     std::int64_t column = 0, row = 0;
   };
-  /// Highest cell of a block, and whether a height is unknown.
+  /// Highest cell of a block, rounded up to float, and whether a height is unknown.
   struct Relief {
     double highest = kNoHeight;
     bool voids = false;
@@ -68,14 +69,16 @@ class ReliefPyramid {
   }
   std::int64_t columns() const { return columns_; }  ///< of the grid, in cells
   std::int64_t rows() const { return rows_; }
-  /// Returns level 0 as the relief of a single tile.
-  BlockRelief finest() const;
+  std::int64_t finest_columns() const { return highest_[0].columns(); }  ///< blocks
+  std::int64_t finest_rows() const { return highest_[0].rows(); }
+  /// Returns a row of blocks of level 0 as the relief of a tile of one row.
+  BlockRelief finest_row(std::int64_t row) const;
   /// Returns the cells of a block, clipped to the grid.
   Window cells(const Block& b) const;
 
  private:
   std::int64_t columns_ = 0, rows_ = 0;
-  std::vector<Grid<double>> highest_;
+  std::vector<Grid<float>> highest_;
   std::vector<Grid<std::uint8_t>> voids_;
 };
 
