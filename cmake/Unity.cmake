@@ -5,7 +5,7 @@ option(WAYMARK_UNITY "Compile several sources of a library at a time" OFF)
 # grows with the square of their number in a unit. And small files about versions, so that a new one moves no other.
 set(alone
   apps/commands/man.cpp apps/result.cpp apps/version.cpp apps/waymark.cpp
-  core/solve/cholesky.cpp core/solve/inverse_by_lu.cpp core/solve/least_squares.cpp core/solve/rotation_between.cpp
+  core/solve/cholesky.cpp core/solve/inverse_by_lu.cpp core/solve/least_squares.cpp core/solve/rotations.cpp
   core/solve/singular_values.cpp core/solve/solve_symmetric.cpp core/solve/symmetric_eigen.cpp
   geo/proj_version.cpp geo/terrain_pyramid.cpp
   exporters/report/histogram.cpp exporters/report/landmark_table.cpp exporters/report/log_plot.cpp exporters/report/track_picture.cpp exporters/vector/ogr_output.cpp exporters/web/web_shapes.cpp

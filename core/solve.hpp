@@ -39,6 +39,9 @@ SymmetricEigen3 symmetric_eigen(const Eigen::Matrix3d& matrix);
 /// zero.
 Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
+/// Returns the rotation about the direction of a rotation vector by its length, radians; zero: none.
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& rotation_vector);
+
 /// Lower Cholesky factor of a symmetric matrix.
 class Cholesky {
  public:

@@ -8,6 +8,9 @@ namespace waymark::inline geo {
 /// - The vertical there leans against that of the origin: with `height` left out, 50 km from the origin and
 ///   4 km high, the point lies 31 m aside.
 /// - Two conversions: below 1 mm aside and 0.2 m high for these numbers. In a local CRS exact.
-Point<MapCrs> point_at_height(const LocalFrame& frame, const Eigen::Vector2d& place, double height);
+Point<MapCrs> point_at_height(const LocalFrame& frame, const Eigen::Vector2d& position, double height);
+
+/// Returns the same for x, y and height of a pose; a height of 0 is unknown: the point on the tangent plane.
+Point<MapCrs> point_of_pose(const LocalFrame& frame, const Eigen::Vector3d& pose);
 
 }  // namespace waymark::inline geo

@@ -214,14 +214,16 @@ class Localize final : public Command {
       return;
     }
     const Eigen::Matrix3d& c = search.at.covariance;
-    values.insert(values.end(),
-                  {{"found_s", *search.t},
-                   {"found_x_m", search.at.pose.x},
-                   {"found_y_m", search.at.pose.y},
-                   {"found_yaw_rad", search.at.pose.yaw},
-                   {"found_covariance",
-                    ResultJson{fmt::format(R"({{"xx":{},"xy":{},"yy":{},"xyaw":{},"yyaw":{},"yawyaw":{}}})",
-                                           c(0, 0), c(0, 1), c(1, 1), c(0, 2), c(1, 2), c(2, 2))}}});
+    values.insert(values.end(), {{"found_s", *search.t},
+                                 {"found_x_m", search.at.pose.x},
+                                 {"found_y_m", search.at.pose.y},
+                                 {"found_yaw_rad", search.at.pose.yaw},
+                                 {"found_covariance", ResultJson{result_object({{"xx", c(0, 0)},
+                                                                                {"xy", c(0, 1)},
+                                                                                {"yy", c(1, 1)},
+                                                                                {"xyaw", c(0, 2)},
+                                                                                {"yyaw", c(1, 2)},
+                                                                                {"yawyaw", c(2, 2)}})}}});
   }
 
   /// Prints the result; keys without a value are null.

@@ -2,10 +2,10 @@
 #include <cmath>
 #include <iostream>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "core/units.hpp"
 #include "workflows/localization/locate_image.hpp"
 
 namespace waymark::apps {
@@ -22,10 +22,10 @@ class Locate final : public Command {
             "Compares craters detected in images that look nearly straight down with a map of the craters of "
             "a "
             "body. Position, direction and scale need not be known. Triangles of neighbouring craters, which "
-            "are alike at any scale, propose places; all craters of the image judge them. A place is "
-            "accepted "
-            "if its probability of being wrong is small.\n\n"
-            "PLACES.csv has a row for each image: longitude and latitude of its middle (of the map's body), "
+            "are alike at any scale, propose positions; all craters of the image judge them. A position is "
+            "accepted if its probability of being wrong is small.\n\n"
+            "POSITIONS.csv has a row for each image: longitude and latitude of its middle (of the map's "
+            "body), "
             "metres per pixel, direction of its upward edge from north, tilt, position and altitude of the "
             "camera with --focal, variances in metres, and the probability of being wrong.",
         .arguments =
@@ -35,7 +35,8 @@ class Locate final : public Command {
                       "`waymark detect craters` writes them"}
                  .needed()
                  .offering(Offer::file),
-             Argument{"-o,--output", "PLACES.csv", &request_.output, "Places to write"}.offering(Offer::file),
+             Argument{"-o,--output", "POSITIONS.csv", &request_.output, "Positions to write"}.offering(
+                 Offer::file),
              Argument{"--matches", "MATCHES.csv", &request_.matches,
                       "Crater of the map of each detection: detections, row, uid"}
                  .offering(Offer::file),
@@ -48,7 +49,7 @@ class Locate final : public Command {
              Argument{"--altitude", "METRES", &request_.altitude,
                       "Height of the camera above the surface, known to 15 %; needs --focal"}
                  .or_else("unknown"),
-             Argument{"--scale", "MIN MAX", &request_.scale, "Least and largest metres per pixel"}.or_else(
+             Argument{"--scale", "MIN MAX", &request_.scale, "Smallest and largest metres per pixel"}.or_else(
                  "unknown"),
              Argument{"--min-confidence", "P", &request_.min_confidence,
                       "Use only craters of the map that exist with at least this probability, 0 to 1"}
@@ -57,7 +58,7 @@ class Locate final : public Command {
                       "Change a setting of the search; may be repeated"},
              Argument{"--settings", "", &list_, "List all settings with their values; needs no map"}.alone(),
              format_option(&format_)},
-        .examples = {{"waymark locate moon.gpkg craters.csv --size 1024 1024 --focal 1500 -o places.csv",
+        .examples = {{"waymark locate moon.gpkg craters.csv --size 1024 1024 --focal 1500 -o positions.csv",
                       "Where a camera over the Moon is"},
                      {"waymark locate moon.gpkg frame*.csv --size 1024 1024 --focal 1500 --altitude 100e3 "
                       "--format json",
@@ -72,7 +73,7 @@ class Locate final : public Command {
     }
     const workflows::LocateResult result =
         workflows::locate_images(request_, console_callbacks(session, format_));
-    if (format_ == "json") print_places(result);
+    if (format_ == "json") print_images(result);
     return 0;
   }
 
@@ -81,20 +82,19 @@ class Locate final : public Command {
     return {
         {"craters", ResultKind::integer, "Craters of the map"},
         {"located", ResultKind::integer, "Images that are located"},
-        {"places", ResultKind::objects,
+        {"images", ResultKind::objects,
          "For each image: detections (file), located, reason, wrong_probability, detected, matched; if "
          "located also residual_px, lon_deg, lat_deg, metres_per_pixel, azimuth_deg, tilt_deg, covariance "
          "of east and north (m), ln of metres per pixel, azimuth and tilts (rad), and with --focal "
          "camera_lon_deg, camera_lat_deg, altitude_m"}};
   }
 
-  static void print_places(const workflows::LocateResult& result) {
-    constexpr double kDegrees = 180 / std::numbers::pi;
-    nlohmann::ordered_json places = nlohmann::ordered_json::array();
+  static void print_images(const workflows::LocateResult& result) {
+    nlohmann::ordered_json images = nlohmann::ordered_json::array();
     std::int64_t located = 0;
     for (const workflows::LocatedImage& image : result.images) {
       located += image.located;
-      nlohmann::ordered_json place{
+      nlohmann::ordered_json one{
           {"detections", image.detections}, {"located", image.located},
           {"reason", image.reason},         {"wrong_probability", image.wrong_probability},
           {"detected", image.detected},     {"matched", image.matched}};
@@ -105,22 +105,22 @@ class Locate final : public Command {
           covariance.push_back(nlohmann::ordered_json::array());
           for (int j = 0; j < parameters; ++j) covariance.back().push_back(image.covariance(i, j));
         }
-        place["residual_px"] = image.residual_px;
-        place["lon_deg"] = image.middle.lon, place["lat_deg"] = image.middle.lat;
-        place["metres_per_pixel"] = image.metres_per_pixel;
-        place["azimuth_deg"] = image.azimuth * kDegrees;
-        place["tilt_deg"] = {image.tilt.x() * kDegrees, image.tilt.y() * kDegrees};
-        place["covariance"] = covariance;
+        one["residual_px"] = image.residual_px;
+        one["lon_deg"] = image.middle.lon, one["lat_deg"] = image.middle.lat;
+        one["metres_per_pixel"] = image.metres_per_pixel;
+        one["azimuth_deg"] = image.azimuth / kRadiansPerDegree;
+        one["tilt_deg"] = {image.tilt.x() / kRadiansPerDegree, image.tilt.y() / kRadiansPerDegree};
+        one["covariance"] = covariance;
         if (image.altitude > 0) {
-          place["camera_lon_deg"] = image.camera.lon, place["camera_lat_deg"] = image.camera.lat;
-          place["altitude_m"] = image.altitude;
+          one["camera_lon_deg"] = image.camera.lon, one["camera_lat_deg"] = image.camera.lat;
+          one["altitude_m"] = image.altitude;
         }
       }
-      places.push_back(place);
+      images.push_back(one);
     }
     print_result(
         result_keys(),
-        {{"craters", result.map_craters}, {"located", located}, {"places", ResultJson{places.dump()}}});
+        {{"craters", result.map_craters}, {"located", located}, {"images", ResultJson{images.dump()}}});
   }
 
   workflows::LocateRequest request_;

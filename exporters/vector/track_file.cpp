@@ -42,10 +42,7 @@ bool knows_wrong_matches(const localization::Track& track) {
 Values values_of(const localization::TrackRow& row, const LocalFrame* frame, bool wrong_known) {
   const Eigen::Matrix3d& c = row.at.covariance;
   Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
-  // z is a height where the terrain is known, else 0.
-  if (frame)
-    at =
-        at.z() != 0 ? point_at_height(*frame, at.head<2>(), at.z()).xyz : frame->crs_from_map_frame({at}).xyz;
+  if (frame) at = point_of_pose(*frame, at).xyz;
   return {row.t,
           at.x(),
           at.y(),

@@ -17,6 +17,7 @@ class NamedCells {
   const TableHeader& header() const { return table_->header(); }
   bool next() { return table_->next(row_); }  ///< reads the next row; false at the end
   std::string location() const { return table_->row_location(row_); }
+  std::int64_t row() const { return row_.number; }  ///< line of a text file, from 1
 
   /// Returns the first column with one of the names, given in lower case.
   std::optional<std::size_t> find(std::initializer_list<std::string_view> names) const;

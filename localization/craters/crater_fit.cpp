@@ -4,13 +4,14 @@
 #include <limits>
 #include <numbers>
 
+#include "core/units.hpp"
 #include "localization/craters/crater_search.hpp"
 
 namespace waymark::localization {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kMaxChance = 0.2;   // craters in a gate by chance, while a place is uncertain
+constexpr double kMaxChance = 0.2;   // craters in a gate by chance, while a position is uncertain
 constexpr double kBandwidth = 0.25;  // of ln of radii of arbitrary detections
 constexpr double kSizeMargin = 1.3;  // of the radii that an image may show
 constexpr double kMinMargin = 0.9;
@@ -67,15 +68,15 @@ CraterFitter::Jacobian CraterFitter::jacobian(const ImagePose& pose, std::uint32
 }
 
 double CraterFitter::variance(std::uint32_t seen, std::uint32_t mapped, double pixels_per_metre) const {
-  const double share = o_.position_error * image_.craters[seen].radius,
+  const double fraction = o_.position_error * image_.craters[seen].radius,
                map = index_.craters_[mapped].sd * pixels_per_metre;
-  return o_.position_sd * o_.position_sd + share * share + map * map;
+  return o_.position_sd * o_.position_sd + fraction * fraction + map * map;
 }
 
 bool CraterFitter::adjust(CraterFix& fix, const Matches& matches) const {
   constexpr int n = ImagePose::kParameters;
   const int free = free_parameters();
-  const double tilt_sd = o_.tilt_sd * kPi / 180;
+  const double tilt_sd = o_.tilt_sd * kRadiansPerDegree;
   for (int round = 0; round < 3; ++round) {
     ImagePose::Covariance information = ImagePose::Covariance::Zero();
     ImagePose::Step right = ImagePose::Step::Zero();
@@ -122,7 +123,7 @@ CraterFitter::Matches CraterFitter::match(const CraterFix& fix) const {
     const ImageCrater& seen = image_.craters[used_[i]];
     const auto at = image_.camera.ground(fix.pose, seen.at, index_.surface_);
     if (!at) continue;
-    // The error of the place is that of a point at this position.
+    // The error of the position is that of a point at this position.
     Jacobian j = Jacobian::Zero();
     ImagePose::Step step;
     step << scale, scale, 1e-4, 1e-4, 1e-4, 1e-4;
@@ -135,14 +136,14 @@ CraterFitter::Matches CraterFitter::match(const CraterFix& fix) const {
       if (const auto moved = image_.camera.project(fix.pose.moved(one, index_.surface_), *at, up))
         j.col(k) = (moved->at - here->at) / step[k];
     }
-    const Eigen::Matrix2d place = j * fix.covariance * j.transpose();
+    const Eigen::Matrix2d position = j * fix.covariance * j.transpose();
     const double radius = seen.radius / here->pixels_per_metre;
     const double own = variance(used_[i], 0, 0);
-    const Eigen::Matrix2d spread = place + own * Eigen::Matrix2d::Identity();
+    const Eigen::Matrix2d spread = position + own * Eigen::Matrix2d::Identity();
     const double area =
         kPi * gate * std::sqrt(spread.determinant()) / (here->pixels_per_metre * here->pixels_per_metre);
     if (index_.density(std::log(radius)) * area * 2 * o_.sigmas * o_.radius_error > kMaxChance &&
-        place.trace() > 2 * own)
+        position.trace() > 2 * own)
       continue;
     const double reach = o_.sigmas * std::sqrt(spread.trace()) / here->pixels_per_metre * 1.5;
     index_.near(*at, reach, radius * std::exp(-o_.sigmas * o_.radius_error), [&](std::uint32_t k, double) {
@@ -152,7 +153,7 @@ CraterFitter::Matches CraterFitter::match(const CraterFix& fix) const {
       if (!seen_at) return;
       const Eigen::Vector2d miss = seen.at - seen_at->at;
       const Eigen::Matrix2d s =
-          place + variance(used_[i], k, seen_at->pixels_per_metre) * Eigen::Matrix2d::Identity();
+          position + variance(used_[i], k, seen_at->pixels_per_metre) * Eigen::Matrix2d::Identity();
       const double squares = miss.dot(s.inverse() * miss);
       if (squares <= gate) pairs.push_back({squares + size * size, i, k});
     });
@@ -206,14 +207,14 @@ void CraterFitter::evaluate(CraterFix& fix, const Matches& matches) const {
     }
     fix.log_false_alarms -= std::log(ratio);
   }
-  // Places that can be distinguished: the volume of all over that of one (Laplace's approximation).
+  // Positions that can be distinguished: the volume of all over that of one (Laplace's approximation).
   const int free = free_parameters();
   const bool bounded = o_.min_scale > 0 && o_.max_scale > o_.min_scale;
-  double places = std::log(index_.surface_.area() * 2 * kPi) +
-                  std::log(bounded ? std::log(o_.max_scale / o_.min_scale) : kScales);
-  if (free > 4) places += 2 * std::log(std::sqrt(2 * kPi) * o_.tilt_sd * kPi / 180);
+  double positions = std::log(index_.surface_.area() * 2 * kPi) +
+                     std::log(bounded ? std::log(o_.max_scale / o_.min_scale) : kScales);
+  if (free > 4) positions += 2 * std::log(std::sqrt(2 * kPi) * o_.tilt_sd * kRadiansPerDegree);
   const double one = std::sqrt(std::max(fix.covariance.topLeftCorner(free, free).determinant(), 1e-300));
-  fix.log_false_alarms += std::max(0.0, places - free / 2.0 * std::log(2 * kPi) - std::log(one));
+  fix.log_false_alarms += std::max(0.0, positions - free / 2.0 * std::log(2 * kPi) - std::log(one));
 }
 
 std::optional<CraterFix> CraterFitter::fit(ImagePose pose, std::span<const std::uint32_t> seen,

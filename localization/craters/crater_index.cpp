@@ -45,10 +45,10 @@ void CraterSearchOptions::describe(OptionVisitor& option) {
   option("sigmas", sigmas,
          {.help = "Standard deviations by which sides and positions may differ", .min = 1, .max = 10});
   option("max_wrong", max_wrong,
-         {.help = "Largest probability of a wrong place that is accepted", .min = 1e-12, .max = 1});
+         {.help = "Largest probability of a wrong position that is accepted", .min = 1e-12, .max = 1});
   option("min_matches", min_matches,
-         {.help = "Smallest number of matched craters of a place", .min = 4, .max = 1000});
-  option("max_tried", max_tried, {.help = "Largest number of places to adjust", .min = 1, .max = 1e5});
+         {.help = "Smallest number of matched craters of a position", .min = 4, .max = 1000});
+  option("max_tried", max_tried, {.help = "Largest number of positions to adjust", .min = 1, .max = 1e5});
   option("max_detections", max_detections,
          {.help = "Detections that are used, the largest", .min = 5, .max = 2000});
 }

@@ -32,9 +32,9 @@ struct CraterSearchOptions {
   double mapped = 0.6;           ///< fraction of the detections expected to be in the map
   double tilt_sd = 2;            ///< degrees off the vertical, of a camera
   double sigmas = 3;
-  double max_wrong = 1e-3;  ///< largest probability of being wrong of an accepted place
+  double max_wrong = 1e-3;  ///< largest probability of being wrong of an accepted position
   std::int64_t min_matches = 5;
-  std::int64_t max_tried = 100;         ///< places that are fitted
+  std::int64_t max_tried = 100;         ///< positions that are fitted
   std::int64_t max_detections = 150;    ///< detections that are used, the largest
   double min_scale = 0, max_scale = 0;  ///< metres per pixel; 0: unknown
 
@@ -48,20 +48,20 @@ struct CraterImage {
   GroundCamera camera{};
 };
 
-/// Place of an image among the craters of a map.
+/// Position of an image among the craters of a map.
 struct CraterFix {
   ImagePose pose;
   ImagePose::Covariance covariance;                   ///< of the parameters of ImagePose::moved()
   std::vector<std::optional<std::uint32_t>> craters;  ///< index into the map, for each crater of the image
   int matched = 0;
   double residual = 0;          ///< px, root mean square distance of the matches
-  double log_false_alarms = 0;  ///< ln of the expected number of places that fit as well by chance
+  double log_false_alarms = 0;  ///< ln of the expected number of positions that fit as well by chance
 };
 
 /// Result of a search. `reason` says why there is no fix.
 struct CraterAnswer {
   std::optional<CraterFix> fix;
-  double wrong = 1;  ///< probability that the best candidate is not the place
+  double wrong = 1;  ///< probability that the best candidate is not the position
   std::string_view reason = {};
   std::vector<CraterFix> candidates;  ///< best first, at most ten; the fix is the first
 };
@@ -71,19 +71,18 @@ struct CraterAnswer {
 /// search.
 /// - The key is two ratios of sides, three of radii to the longest side, and the sense of rotation. None
 ///   depends on scale, turn or position.
-/// - Each crater makes triangles with its nearest neighbours of at least 0.8 of its radius. An image that
-/// shows
-///   all craters of that size has the same triangles at any scale.
+/// - Each crater makes triangles with its nearest neighbours of at least 0.8 of its radius. An image with all
+///   craters of that size has the same triangles at any scale.
 class CraterIndex {
  public:
   CraterIndex(std::vector<BodyCrater> craters, const Body& body, CraterSearchOptions options = {});
 
   /// Returns where an image was taken; the search area is the whole body. Deterministic for any number of
   /// threads. 0.1 to 2 s of one core.
-  /// - Triangles of the image propose places, each is scored by the craters around the triangle, and the best
-  ///   are adjusted to all (crater_fit.cpp).
+  /// - Triangles of the image propose positions. Each is scored by the craters around the triangle, and the
+  ///   best are adjusted to all (crater_fit.cpp).
   /// - Evidence: a detection is any crater of the map in view, or arbitrary. Its ratio to arbitrary
-  ///   detections alone exceeds x by chance at most once in x places (Markov's inequality).
+  ///   detections alone exceeds x by chance at most once in x positions (Markov's inequality).
   CraterAnswer find(const CraterImage& image) const;
   CraterAnswer find(const CraterImage& image, const CraterSearchOptions& options) const;
 

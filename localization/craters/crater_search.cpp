@@ -17,11 +17,11 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kAsLarge = 0.7;  // radius of a neighbour over that of the crater; the map's 0.8, with errors
 constexpr double kDistortion = 0.01;  // relative error of sides by tilt, perspective and curvature
 constexpr std::size_t kScored = 15;   // detections around a triangle that score it
-constexpr double kHopeless = -3;      // score at which a place is given up
+constexpr double kHopeless = -3;      // score at which a position is given up
 constexpr std::size_t kMinBatch = 4, kMaxBatch = 64, kTriedAtOnce = 4, kKept = 10;
-constexpr std::size_t kMaxScored = 400000;  // places; without a certain one the search then ends
-constexpr double kSurelyRight = -25;        // ln of the chance places of one that needs no further search
-constexpr double kWorthAFit = 4;            // score from which a place is adjusted at once
+constexpr std::size_t kMaxScored = 400000;  // positions; without a certain one the search then ends
+constexpr double kSurelyRight = -25;        // ln of the chance positions of one that needs no further search
+constexpr double kWorthAFit = 4;            // score from which a position is adjusted at once
 
 }  // namespace
 
@@ -83,7 +83,7 @@ std::vector<CraterSearch::Triangle> CraterSearch::image_triangles() const {
   std::vector<Triangle> all;
   for (const auto& t : triples)
     if (const auto triangle = ordered(t)) all.push_back(*triangle);
-  // Precise triangles have the fewest places.
+  // Precise triangles have the fewest positions.
   std::ranges::stable_sort(all, {}, &Triangle::weight);
   return all;
 }
@@ -180,7 +180,7 @@ double CraterSearch::score(const CraterGuess& g, const CraterPlane& plane) const
     extent += (image_.craters[i].at - middle).squaredNorm() / 3;
     error += sd(i) * sd(i) / 3;
   }
-  // The nearest detections, of which the place knows most.
+  // The nearest detections: the triangle predicts them best.
   std::array<std::pair<double, std::uint32_t>, kScored> near;
   std::size_t count = 0;
   for (const std::uint32_t i : used_) {
@@ -246,13 +246,13 @@ void CraterSearch::keep(std::vector<CraterFix>& fixes, CraterFix fix) const {
 }
 
 std::string_view CraterSearch::verdict(const CraterAnswer& answer) const {
-  if (answer.candidates.empty()) return "no place has such craters";
+  if (answer.candidates.empty()) return "no position has such craters";
   const CraterFix& best = answer.candidates[0];
-  if (best.matched < o_.min_matches) return "too few craters fit one place";
+  if (best.matched < o_.min_matches) return "too few craters fit one position";
   if (answer.wrong <= o_.max_wrong) return "";
   if (answer.candidates.size() > 1 && answer.candidates[1].log_false_alarms < 0)
-    return "two places fit alike";
-  return "the best place may fit by chance";
+    return "two positions fit alike";
+  return "the best position may fit by chance";
 }
 
 CraterAnswer CraterSearch::find() const {

@@ -6,7 +6,7 @@
 #include "localization/craters/crater_index.hpp"
 namespace waymark::localization {
 
-/// Cells of triangles that are alike whatever their scale, turn and place.
+/// Cells of triangles that are alike whatever their scale, turn and position.
 namespace crater_cells {
 inline constexpr int kMiddle = 20, kShort = 40, kSizes = 13;  // per dimension
 inline constexpr double kMinLogSize = -5.2, kSizeStep = 0.4;  // of ln(radius / longest side)
@@ -29,8 +29,8 @@ inline std::size_t cell(bool left, int middle, int shortest, const std::array<in
 }
 }  // namespace crater_cells
 
-/// Place proposed by a triangle: similarity from the image, y upwards, to the plane that touches the body at
-/// a crater, as complex numbers: plane = factor * image + shift.
+/// Position proposed by a triangle: similarity from the image, y upwards, to the plane that touches the body
+/// at a crater, as complex numbers: plane = factor * image + shift.
 struct CraterGuess {
   std::uint32_t anchor = 0;
   std::array<std::uint32_t, 3> seen{}, mapped{};
@@ -47,7 +47,7 @@ struct CraterPlane {
   }
 };
 
-/// One search: triangles propose places, and the craters around score them.
+/// One search: triangles propose positions, and the craters around score them.
 class CraterSearch {
  public:
   CraterSearch(const CraterIndex& index, const CraterImage& image, const CraterSearchOptions& options);
@@ -64,7 +64,7 @@ class CraterSearch {
   };
   std::vector<Triangle> image_triangles() const;
   std::optional<Triangle> ordered(std::array<std::uint32_t, 3> c) const;
-  /// Places that a triangle proposes.
+  /// Positions that a triangle proposes.
   struct Proposals {
     std::vector<CraterGuess> likely = {};
     std::size_t scored = 0;
@@ -84,12 +84,12 @@ class CraterSearch {
   std::vector<std::uint32_t> used_;  // detections, the largest first
 };
 
-/// Adjusts places to all craters of an image.
+/// Adjusts positions to all craters of an image.
 class CraterFitter {
  public:
   CraterFitter(const CraterIndex& index, const CraterImage& image, const CraterSearchOptions& options,
                std::span<const std::uint32_t> used);
-  /// Returns the least-squares place near a first one, with the first matches; `std::nullopt` if too few
+  /// Returns the least-squares position near a first one, with the first matches; `std::nullopt` if too few
   /// craters match.
   std::optional<CraterFix> fit(ImagePose pose, std::span<const std::uint32_t> seen,
                                std::span<const std::uint32_t> mapped) const;

@@ -10,30 +10,12 @@
 namespace waymark::localization {
 namespace {
 
-constexpr double kPerDegree = std::numbers::pi / 180;
-
 Eigen::Vector3d north_of(const Eigen::Vector3d& up) {
   const Eigen::Vector3d north = Eigen::Vector3d::UnitZ() - up.z() * up;
   return north.norm() > 1e-12 ? Eigen::Vector3d(north.normalized()) : Eigen::Vector3d::UnitX();
 }
 
 }  // namespace
-
-Eigen::Vector3d BodySurface::point(LonLat at, double height) const {
-  const double lon = at.lon * kPerDegree, lat = at.lat * kPerDegree;
-  const Eigen::Vector3d normal(std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat));
-  const Eigen::Vector3d scaled(equatorial_ * normal.x(), equatorial_ * normal.y(), polar_ * normal.z());
-  const Eigen::Vector3d on_surface =
-      Eigen::Vector3d(equatorial_ * scaled.x(), equatorial_ * scaled.y(), polar_ * scaled.z()) /
-      scaled.norm();
-  return on_surface + height * normal;
-}
-
-LonLat BodySurface::lon_lat(const Eigen::Vector3d& on_surface) const {
-  const Eigen::Vector3d normal = up(on_surface);
-  return {std::atan2(normal.y(), normal.x()) / kPerDegree,
-          std::atan2(normal.z(), std::hypot(normal.x(), normal.y())) / kPerDegree};
-}
 
 Eigen::Vector3d BodySurface::up(const Eigen::Vector3d& on_surface) const {
   const Eigen::Vector3d p = squeezed(on_surface);
@@ -91,10 +73,7 @@ ImagePose image_pose(const BodySurface& surface, const Eigen::Vector3d& ground, 
 }
 
 Eigen::Matrix3d GroundCamera::tilted_axes(const ImagePose& pose) const {
-  const Eigen::Vector3d turn = pose.tilt.x() * pose.axes.col(0) + pose.tilt.y() * pose.axes.col(1);
-  const double angle = turn.norm();
-  if (!(angle > 0)) return pose.axes;
-  return Eigen::AngleAxisd(angle, turn / angle) * pose.axes;
+  return rotation_by(pose.tilt.x() * pose.axes.col(0) + pose.tilt.y() * pose.axes.col(1)) * pose.axes;
 }
 
 std::optional<ImagePoint> GroundCamera::project(const ImagePose& pose, const Eigen::Vector3d& point,

@@ -2,18 +2,19 @@
 #pragma once
 #include <Eigen/Core>
 #include <optional>
-#include "geo/body.hpp"
+#include "geo/geocentric.hpp"
 namespace waymark::localization {
 
 /// Surface of a body at height 0, an ellipsoid of revolution. Coordinates are metres from its centre, x
 /// through the prime meridian, z through the north pole.
 class BodySurface {
  public:
-  explicit BodySurface(const Body& body) : equatorial_(body.equatorial_radius), polar_(body.polar_radius()) {}
+  explicit BodySurface(const Body& body)
+      : body_(body), equatorial_(body.equatorial_radius), polar_(body.polar_radius()) {}
 
   /// Returns the point at a longitude and geodetic latitude, degrees, and a height, metres.
-  Eigen::Vector3d point(LonLat at, double height = 0) const;
-  LonLat lon_lat(const Eigen::Vector3d& on_surface) const;
+  Eigen::Vector3d point(LonLat at, double height = 0) const { return geocentric(body_, {at, height}); }
+  Geodetic geodetic(const Eigen::Vector3d& point) const { return geo::geodetic(body_, point); }
   Eigen::Vector3d up(const Eigen::Vector3d& on_surface) const;
   /// Returns the point of the surface in the direction of a point from the centre.
   Eigen::Vector3d nearest(const Eigen::Vector3d& point) const;
@@ -26,10 +27,11 @@ class BodySurface {
   Eigen::Vector3d squeezed(const Eigen::Vector3d& p) const {
     return {p.x() / equatorial_, p.y() / equatorial_, p.z() / polar_};
   }
+  Body body_;
   double equatorial_, polar_;
 };
 
-/// Place and attitude of an image of the ground that looks nearly straight down.
+/// Position and attitude of an image of the ground that looks nearly straight down.
 struct ImagePose {
   static constexpr int kParameters = 6;
   using Step = Eigen::Matrix<double, kParameters, 1>;

@@ -14,8 +14,8 @@ class SkylineIndex {
 
   /// Finds as find_by_skyline() does. `heading`: that of a compass, instead of the options'.
   SkylineAnswer find(std::span<const HorizonTop> tops, std::optional<double> heading = {}) const;
-  /// Finds the pose by the whole horizon rather than its tops: all that a panorama measured. `std::nullopt`
-  /// elevations, parts of a turn and obstacles in front of the horizon are allowed for. Names no summits.
+  /// Finds the pose by the whole horizon rather than its tops. Unknown elevations, parts of a turn and
+  /// obstacles in front of the horizon are allowed for. Names no summits.
   SkylineAnswer find(const HorizonProfile& horizon, std::optional<double> heading = {}) const;
   std::size_t viewpoints() const { return viewpoints_.size(); }
 

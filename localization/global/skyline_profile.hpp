@@ -41,8 +41,7 @@ std::vector<HorizonGuess> best_headings(std::span<const HorizonViewpoint> viewpo
 /// Fits the pose near a guess that is off by about `place` metres to the whole horizon. `std::nullopt` if the
 /// rays do not determine it.
 /// - Least squares over rays through the DEM, with Cauchy's kernel.
-/// - The variance of a ray is that of the sensor and of the heights at its horizon
-/// (SkylineOptions::height_sd).
+/// - The variance of a ray is that of the sensor and of the heights at its horizon (height_sd).
 /// - The error of the heights is height_sd or a part of it, whichever makes the horizon more probable.
 /// - The chance of the fit compares each ray with an arbitrary horizon that goes on from the ray before it.
 std::optional<SkylineFix> fit_profile(const SkylineScene& scene, const SeenHorizon& seen,

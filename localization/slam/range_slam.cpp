@@ -89,18 +89,24 @@ RangeSlam::Prediction RangeSlam::predict_range(const Pose2& mount, const Beacon&
   return p;
 }
 
-// Joseph form; rows outside of the segment are considered but not corrected.
+// Joseph form, (I - K H) P (I - K H)' + K N K': positive for any gain.
+void RangeSlam::apply(const Eigen::MatrixXd& gain, const Measurement& m) {
+  mean_ += gain * m.innovation;
+  mean_[2] = wrap_angle(mean_[2]);
+  const Eigen::MatrixXd kept = covariance_ - gain * (m.rows * covariance_);
+  covariance_ = kept - (kept * m.rows.transpose()) * gain.transpose() + gain * m.noise * gain.transpose();
+  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
+}
+
+// Rows outside of the segment are considered but not corrected.
 void RangeSlam::correct(const Prediction& p, double innovation, double noise, Eigen::Index first,
                         Eigen::Index count) {
   const Eigen::VectorXd with = covariance_ * p.row;
   const double s = p.row.dot(with) + noise;
   Eigen::VectorXd gain = Eigen::VectorXd::Zero(mean_.size());
   gain.segment(first, count) = with.segment(first, count) / s;
-  mean_ += gain * innovation;
-  mean_[2] = wrap_angle(mean_[2]);
-  // (I - k h) P (I - k h)' + k r k' with P h = with.
-  covariance_ += s * gain * gain.transpose() - gain * with.transpose() - with * gain.transpose();
-  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
+  apply(gain, {p.row.transpose(), Eigen::VectorXd::Constant(1, innovation),
+               Eigen::MatrixXd::Constant(1, 1, noise)});
 }
 
 bool RangeSlam::update(Beacon& beacon, const SeenLandmark& seen, const Pose2& mount) {
@@ -244,31 +250,25 @@ std::vector<Match> RangeSlam::update(const SightingSet& seen) {
   return matches;
 }
 
-bool RangeSlam::measure(const Eigen::MatrixXd& rows, const Eigen::VectorXd& v, const Eigen::MatrixXd& noise) {
-  const Eigen::MatrixXd with = covariance_ * rows.transpose();
-  const Eigen::MatrixXd s = rows * with + noise, inverse = s.inverse();
-  if (!(v.dot(inverse * v) <= kFixGateSquares)) return false;
-  mean_ += with * (inverse * v);
-  mean_[2] = wrap_angle(mean_[2]);
-  covariance_ -= with * inverse * with.transpose();
-  covariance_ = ((covariance_ + covariance_.transpose()) / 2).eval();
+bool RangeSlam::measure(const Measurement& m) {
+  const Eigen::MatrixXd with = covariance_ * m.rows.transpose();
+  const Eigen::MatrixXd inverse = (m.rows * with + m.noise).inverse();
+  if (!(m.innovation.dot(inverse * m.innovation) <= kFixGateSquares)) return false;
+  apply(with * inverse, m);
   return true;
 }
 
 bool RangeSlam::fix(const GnssFix& gnss) {
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(2, mean_.size());
   rows(0, 0) = rows(1, 1) = 1;
-  return measure(rows, gnss.at - mean_.head<2>(), gnss.sd * gnss.sd * Eigen::Matrix2d::Identity());
+  return measure({rows, gnss.at - mean_.head<2>(), gnss.sd * gnss.sd * Eigen::Matrix2d::Identity()});
 }
 
 bool RangeSlam::fix(const HeadingFix& heading) {
   Eigen::MatrixXd row = Eigen::MatrixXd::Zero(1, mean_.size());
   row(0, 2) = 1;
-  Eigen::VectorXd v(1);
-  v[0] = wrap_angle(heading.yaw - mean_[2]);
-  Eigen::MatrixXd noise(1, 1);
-  noise(0, 0) = heading.sd * heading.sd;
-  return measure(row, v, noise);
+  return measure({row, Eigen::VectorXd::Constant(1, wrap_angle(heading.yaw - mean_[2])),
+                  Eigen::MatrixXd::Constant(1, 1, heading.sd * heading.sd)});
 }
 
 PoseEstimate RangeSlam::estimate() const {

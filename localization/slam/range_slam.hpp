@@ -25,14 +25,13 @@ struct RangeBeacon {
 /// Extended Kalman filter over pose, beacons and their offsets, by ranges to identified beacons.
 /// - State: the pose, then position and offset of each beacon. Beacons of the map begin with its covariance,
 ///   and are refined.
-/// - An unknown beacon begins as a ring of hypotheses about its first range (Djugash et al. 2006; Caballero
-/// et
-///   al. 2008). Each is corrected by later ranges without correcting the pose (Schmidt 1966), so the
-///   covariance holds whichever is right. One that is left with almost all weight becomes a beacon like the
-///   others.
+/// - An unknown beacon begins as a ring of hypotheses about its first range (Djugash et al. 2006;
+///   Caballero et al. 2008). Each is corrected by later ranges without correcting the pose (Schmidt 1966), so
+///   the covariance holds whichever is right. One that is left with almost all weight becomes a beacon like
+///   the others.
 /// - Two positions on both sides of a straight drive stay open until the robot turns.
-/// - Sightings with a bearing, or without identity, are left out. O(n^2) per range and hypothesis for n
-/// beacons.
+/// - Sightings with a bearing, or without identity, are left out.
+/// - O(n^2) per range and hypothesis for n beacons.
 class RangeSlam final : public Localizer {
  public:
   RangeSlam(const PoseEstimate& start, std::vector<RangeBeacon> beacons, RangeSlamOptions options = {});
@@ -72,20 +71,26 @@ class RangeSlam final : public Localizer {
   };
   Prediction predict_range(const Pose2& mount, const Beacon& beacon, Eigen::Index row) const;
   void correct(const Prediction& p, double innovation, double noise, Eigen::Index first, Eigen::Index count);
+  /// Measurement that is linear in the state.
+  struct Measurement {
+    Eigen::MatrixXd rows;
+    Eigen::VectorXd innovation;
+    Eigen::MatrixXd noise;
+  };
+  void apply(const Eigen::MatrixXd& gain, const Measurement& m);
   bool update(Beacon& beacon, const SeenLandmark& seen, const Pose2& mount);
   /// Range to a beacon that was heard once, and the distance driven until then.
   struct FirstRange {
     LandmarkKey key = 0;
     double range = 0, driven = 0;
   };
-  /// Returns whether a range agrees with the first one to its beacon; keeps the shorter, since echoes are
-  /// long.
+  /// Returns whether a range agrees with the first one to its beacon; keeps the shorter, as echoes are long.
   bool is_confirmed(const SeenLandmark& seen);
   void start_ring(const SeenLandmark& seen, const Pose2& mount);
   void weigh(Beacon& beacon, const SeenLandmark& seen, const Pose2& mount);
   void prune(Beacon& beacon);
   void remove_rows(Eigen::Index row);
-  bool measure(const Eigen::MatrixXd& rows, const Eigen::VectorXd& innovation, const Eigen::MatrixXd& noise);
+  bool measure(const Measurement& m);
 
   RangeSlamOptions options_;
   Eigen::VectorXd mean_;

@@ -10,6 +10,7 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "core/solve.hpp"
 
 namespace waymark::testbed {
 namespace {
@@ -17,12 +18,6 @@ namespace {
 Eigen::Vector3d random_vector(Random& random, double sd) {
   const double x = random.normal(), y = random.normal(), z = random.normal();
   return sd * Eigen::Vector3d(x, y, z);
-}
-
-Eigen::Matrix3d rotation_from(const Eigen::Vector3d& angles) {
-  const double angle = angles.norm();
-  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, angles / angle).toRotationMatrix();
 }
 
 // Nadir view with the upper edge towards the heading, then tilted forwards.
@@ -76,7 +71,7 @@ void add_shot(std::vector<Shot>& shots, const Scenario& scenario, const std::str
   shot.view.covariance.diagonal() << Eigen::Vector3d::Constant(attitude_sd * attitude_sd),
       Eigen::Vector3d::Constant(position_sd * position_sd);
   shot.reported.transform = pose;
-  shot.reported.transform.linear() = pose.linear() * rotation_from(random_vector(errors, attitude_sd));
+  shot.reported.transform.linear() = pose.linear() * rotation_by(random_vector(errors, attitude_sd));
   shot.reported.transform.translation() += random_vector(errors, position_sd);
   shots.push_back(std::move(shot));
 }
@@ -96,7 +91,7 @@ void add_lines(std::vector<Shot>& shots, const Scenario& scenario, const Flight&
       const Eigen::Vector2d place = (1 - along) * from + along * to + double(line) * f.line_spacing * right;
       Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
       pose.linear() = attitude(back ? Eigen::Vector2d(-ahead) : ahead, to_radians(f.tilt).value) *
-                      rotation_from(random_vector(random, to_radians(f.attitude_sd).value));
+                      rotation_by(random_vector(random, to_radians(f.attitude_sd).value));
       const Eigen::Vector3d off = random_vector(random, f.track_sd);
       const double altitude = f.from_altitude * std::pow(f.to_altitude / f.from_altitude, along);
       pose.translation() =

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <numbers>
 
 namespace waymark::test {
 namespace {
@@ -57,6 +58,15 @@ TEST(Solve, RotationTurnsOneDirectionIntoTheOther) {
   const Eigen::Matrix3d turn = rotation_between(from, to);
   EXPECT_LT((turn * from.normalized() - to.normalized()).norm(), 1e-14);
   EXPECT_NEAR(turn.determinant(), 1, 1e-14);
+}
+
+TEST(Solve, RotationVectorsTurnAboutTheirDirection) {
+  const Eigen::Matrix3d quarter = rotation_by({0, 0, std::numbers::pi / 2});
+  EXPECT_LT((quarter * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  const Eigen::Vector3d vector(0.3, -0.2, 0.5);
+  EXPECT_LT((rotation_by(vector) * vector - vector).norm(), 1e-15);
+  EXPECT_LT((rotation_by(vector) * rotation_by(-vector) - Eigen::Matrix3d::Identity()).norm(), 1e-15);
+  EXPECT_EQ(rotation_by(Eigen::Vector3d::Zero()), Eigen::Matrix3d::Identity());
 }
 
 }  // namespace

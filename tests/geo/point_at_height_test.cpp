@@ -38,5 +38,13 @@ TEST(PointAtHeight, IsATranslationInALocalCrs) {
   EXPECT_EQ(point_at_height(frame, {3, 4}, 7).xyz, Eigen::Vector3d(103, 204, 7));
 }
 
+TEST(PointAtHeight, OfAPoseWithoutHeightIsOnTheTangentPlane) {
+  const LocalFrame frame(Crs::from_text("EPSG:4326"), {{-70.5, -32.5, 0}});
+  const Eigen::Vector3d plane = frame.crs_from_map_frame({{40'000, 0, 0}}).xyz;
+  EXPECT_EQ(point_of_pose(frame, {40'000, 0, 0}).xyz, plane);
+  EXPECT_EQ(point_of_pose(frame, {40'000, 0, 4000}).xyz, point_at_height(frame, {40'000, 0}, 4000).xyz);
+  EXPECT_GT((point_of_pose(frame, {40'000, 0, 4000}).xyz - plane).head<2>().norm(), 2e-4);  // degrees
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -3,16 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
+#include "geo/point_at_height.hpp"
 #include "geodb/shape_layer.hpp"
 #include "localization/harvested_trees.hpp"
 
 namespace waymark::workflows {
 namespace {
 
-Eigen::Vector2d in_crs(const LocalFrame& frame, const Eigen::Vector2d& at) {
-  return frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.head<2>();
+Eigen::Vector2d in_crs(const LocalFrame& frame, const Eigen::Vector2d& at, double height = 0) {
+  return point_of_pose(frame, {at.x(), at.y(), height}).xyz.head<2>();
 }
 
 AttributeValue or_null(double value) {
@@ -39,14 +41,15 @@ void write_drive_layers(const std::filesystem::path& map, const localization::Ro
                          .style = {.colour = "#d95f02", .width = 0.8}};
   // Corners closer than a decimetre say nothing.
   std::vector<Eigen::Vector2d> corners;
+  std::optional<Eigen::Vector2d> last;
   double largest = 0;
   for (const localization::TrackRow& row : track.rows) {
     largest = std::max(largest, std::sqrt(std::max(row.at.covariance(0, 0), row.at.covariance(1, 1))));
-    if (corners.empty() || (row.at.pose.at() - corners.back()).norm() > 0.1)
-      corners.push_back(row.at.pose.at());
+    if (last && !((row.at.pose.at() - *last).norm() > 0.1)) continue;
+    last = row.at.pose.at();
+    corners.push_back(in_crs(frame, *last, row.z));
   }
   if (corners.size() > 1) {
-    for (Eigen::Vector2d& at : corners) at = in_crs(frame, at);
     line.rows.push_back({{{corners, {}}}, {track.rows.front().t, track.rows.back().t, largest}});
   }
   layers.push_back(std::move(line));

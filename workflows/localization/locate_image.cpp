@@ -6,15 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "core/units.hpp"
 #include "exporters/formatting.hpp"
 #include "geo/crs.hpp"
 #include "geodb/map_store.hpp"
-#include "importers/tables/table.hpp"
+#include "importers/tables/named_cells.hpp"
 #include "importers/tables/table_number.hpp"
 #include "workflows/localization/localize_method.hpp"
 #include "workflows/registries.hpp"
@@ -28,7 +28,6 @@ using localization::ImageCrater;
 using localization::ImagePose;
 
 constexpr double kAltitudeRange = 0.15;  // of a stated altitude
-constexpr double kDegree = std::numbers::pi / 180;
 
 struct CraterMap {
   std::vector<BodyCrater> craters = {};
@@ -77,32 +76,24 @@ struct Detections {
   Eigen::Vector2d size = Eigen::Vector2d::Zero();
 };
 
-std::optional<std::size_t> column(const importers::TableHeader& header, const std::string& name) {
-  const auto found = std::ranges::find(header.columns, name);
-  if (found == header.columns.end()) return {};
-  return static_cast<std::size_t>(found - header.columns.begin());
-}
-
 Detections read_detections(const std::string& file, const LocateRequest& request) {
-  const auto table = importers::open_table(file, importers::TableFormat::by_name, "", "");
-  const importers::TableHeader& header = table->header();
-  const auto x = column(header, "x"), y = column(header, "y"), diameter = column(header, "diameter"),
-             radius = column(header, "radius");
+  importers::NamedCells cells(file);
+  const auto x = cells.find({"x"}), y = cells.find({"y"}), diameter = cells.find({"diameter"}),
+             radius = cells.find({"radius"});
   if (!x || !y || (!diameter && !radius))
     throw Error(ErrorCode::input, "the table needs the columns x, y and diameter or radius, in pixels", file,
                 "`waymark detect craters IMAGE -o OUT.csv` writes them");
   Detections out;
-  importers::TableRow row;
-  while (table->next(row)) {
-    const auto number = [&](std::size_t at) {
-      return at < row.cells.size() ? importers::to_real(row.cells[at], header.decimal_comma) : std::nullopt;
+  while (cells.next()) {
+    const auto number = [&](std::size_t column) {
+      return importers::to_real(cells.text(column), cells.header().decimal_comma);
     };
     const auto at_x = number(*x), at_y = number(*y), size = number(diameter ? *diameter : *radius);
     if (!at_x || !at_y || !size || !(*size > 0))
-      throw Error(ErrorCode::input, "a detection needs numbers, and a size above 0", table->row_location(row),
+      throw Error(ErrorCode::input, "a detection needs numbers, and a size above 0", cells.location(),
                   "remove or complete the line");
     out.craters.push_back({{*at_x, *at_y}, diameter ? *size / 2 : *size});
-    out.rows.push_back(row.number);
+    out.rows.push_back(cells.row());
   }
   Eigen::Vector2d middle = Eigen::Vector2d::Zero();
   if (request.size.size() == 2) {
@@ -136,15 +127,15 @@ LocatedImage located_image(const std::string& file, const Detections& seen,
   const localization::CraterFix& fix = *answer.fix;
   image.matched = fix.matched;
   image.residual_px = fix.residual;
-  image.middle = surface.lon_lat(fix.pose.ground);
+  image.middle = surface.geodetic(fix.pose.ground).at;
   image.metres_per_pixel = std::exp(fix.pose.log_scale);
   image.azimuth = fix.pose.azimuth();
   image.tilt = fix.pose.tilt;
   image.covariance = to_east_north(fix.covariance, image.azimuth);
   if (const auto at = camera.position(fix.pose)) {
-    const Eigen::Vector3d below = surface.nearest(*at);
-    image.camera = surface.lon_lat(below);
-    image.altitude = (*at - below).norm();
+    const Geodetic above = surface.geodetic(*at);
+    image.camera = above.at;
+    image.altitude = above.height;
   } else {
     image.covariance.bottomRows<2>().setZero();
     image.covariance.rightCols<2>().setZero();
@@ -155,14 +146,14 @@ LocatedImage located_image(const std::string& file, const Detections& seen,
 std::string text_of(const LocatedImage& image) {
   if (!image.located)
     return fmt::format(
-        "{}: not located: {}; of {} craters; the best place is wrong with a probability of {:.2g}\n",
+        "{}: not located: {}; of {} craters; the best position is wrong with a probability of {:.2g}\n",
         image.detections, image.reason, image.detected, image.wrong_probability);
   const auto sd = [&](int k) { return std::sqrt(image.covariance(k, k)); };
   std::string text = fmt::format(
       "{}: middle at {:.6f}, {:.6f} ({:.2g}, {:.2g} m), {:.5g} m per pixel ({:.2g}), up is {:.3f} ({:.2g}) "
       "degrees from north",
       image.detections, image.middle.lon, image.middle.lat, sd(0), sd(1), image.metres_per_pixel,
-      image.metres_per_pixel * sd(2), image.azimuth / kDegree, sd(3) / kDegree);
+      image.metres_per_pixel * sd(2), image.azimuth / kRadiansPerDegree, sd(3) / kRadiansPerDegree);
   if (image.altitude > 0)
     text += fmt::format(", camera {:.6g} m above {:.6f}, {:.6f}", image.altitude, image.camera.lon,
                         image.camera.lat);
@@ -170,7 +161,7 @@ std::string text_of(const LocatedImage& image) {
                             image.matched, image.detected, image.residual_px, image.wrong_probability);
 }
 
-std::string places_csv(const LocateResult& result) {
+std::string positions_csv(const LocateResult& result) {
   std::string text =
       "detections,located,lon,lat,metres_per_pixel,azimuth_deg,tilt_x_deg,tilt_y_deg,camera_lon,camera_lat,"
       "altitude_m,var_east,var_north,cov_east_north,scale_sd,azimuth_sd_deg,matched,detected,residual_px,"
@@ -178,14 +169,14 @@ std::string places_csv(const LocateResult& result) {
   for (const LocatedImage& i : result.images) {
     text += exporters::csv_text(i.detections) + (i.located ? ",1" : ",0");
     if (i.located) {
-      text +=
-          fmt::format(",{:.9f},{:.9f},{:.8g},{:.5f},{:.5f},{:.5f}", i.middle.lon, i.middle.lat,
-                      i.metres_per_pixel, i.azimuth / kDegree, i.tilt.x() / kDegree, i.tilt.y() / kDegree);
+      text += fmt::format(",{:.9f},{:.9f},{:.8g},{:.5f},{:.5f},{:.5f}", i.middle.lon, i.middle.lat,
+                          i.metres_per_pixel, i.azimuth / kRadiansPerDegree, i.tilt.x() / kRadiansPerDegree,
+                          i.tilt.y() / kRadiansPerDegree);
       text += i.altitude > 0 ? fmt::format(",{:.9f},{:.9f},{:.8g}", i.camera.lon, i.camera.lat, i.altitude)
                              : ",,,";
       text += fmt::format(",{:.6g},{:.6g},{:.6g},{:.4g},{:.4g}", i.covariance(0, 0), i.covariance(1, 1),
                           i.covariance(0, 1), i.metres_per_pixel * std::sqrt(i.covariance(2, 2)),
-                          std::sqrt(i.covariance(3, 3)) / kDegree);
+                          std::sqrt(i.covariance(3, 3)) / kRadiansPerDegree);
     } else {
       text += ",,,,,,,,,,,,,,";
     }
@@ -257,7 +248,7 @@ LocateResult locate_images(const LocateRequest& request, const Callbacks& callba
           matches += fmt::format("{},{},{}\n", exporters::csv_text(file), seen.rows[i],
                                  exporters::csv_text(map.uids[*crater]));
   }
-  if (!request.output.empty()) write_file(request.output, places_csv(result));
+  if (!request.output.empty()) write_file(request.output, positions_csv(result));
   if (!request.matches.empty()) write_file(request.matches, matches);
   return result;
 }

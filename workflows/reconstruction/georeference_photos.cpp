@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "pipeline/reconstruction/adjustment/frame_by_heights.hpp"
 #include "pipeline/reconstruction/adjustment/georeference.hpp"
-#include "pipeline/reconstruction/adjustment/local_frame.hpp"
 #include "pipeline/reconstruction/adjustment/place_on_dem.hpp"
 #include "pipeline/reconstruction/adjustment/residual_correlation.hpp"
 #include "workflows/reconstruction/coarse_dem.hpp"
@@ -173,7 +173,7 @@ void georeference_by_heights(PosedPhotos& posed, const pipeline::Observations& s
   std::size_t component = 0;
   for (const pipeline::AdjustedImage& image : posed.scene.images)
     if (image.world_from_camera) component = image.component;
-  const pipeline::LocalFrameResult placed = pipeline::local_frame(posed.scene, seen, component);
+  const pipeline::FrameByHeightsResult placed = pipeline::frame_by_heights(posed.scene, seen, component);
   if (!placed.found) {
     posed.messages.push_back("the frame is arbitrary: " + placed.message +
                              "; control points, GPS positions or other heights give it");

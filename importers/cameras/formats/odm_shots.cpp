@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 
+#include "core/solve.hpp"
 #include "geo/crs.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/interior_orientation.hpp"
@@ -48,10 +49,8 @@ Camera plain_lens(const JsonValue& shot) {
 }
 
 Eigen::Isometry3d world_from_camera(const JsonValue& shot) {
-  const Eigen::Vector3d turn = shot["rotation"].vector3();
-  const double angle = turn.norm();
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  if (angle > 0) pose.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix().transpose();
+  pose.linear() = rotation_by(shot["rotation"].vector3()).transpose();
   pose.translation() = shot["translation"].vector3();
   return pose;
 }

@@ -11,6 +11,7 @@
 
 #include <cmath>
 
+#include "core/solve.hpp"
 #include "geo/crs.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/interior_orientation.hpp"
@@ -20,10 +21,8 @@ namespace waymark::importers {
 namespace {
 
 Eigen::Isometry3d world_from_shot(const JsonValue& shot) {
-  const Eigen::Vector3d turn = shot["rotation"].vector3(), t = shot["translation"].vector3();
-  const double angle = turn.norm();
-  const Eigen::Matrix3d camera_from_world =
-      angle > 0 ? Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix() : Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d t = shot["translation"].vector3();
+  const Eigen::Matrix3d camera_from_world = rotation_by(shot["rotation"].vector3());
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
   pose.linear() = camera_from_world.transpose();
   pose.translation() = -(camera_from_world.transpose() * t);

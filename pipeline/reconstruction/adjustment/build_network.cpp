@@ -173,7 +173,7 @@ class Builder {
         add_block(Block::Kind::pose, value, fixed ? std::vector<int>{} : std::vector<int>{0, 1, 2, 3, 4, 5});
   }
 
-  // Motions are unknowns beside what the neighbours let expect of them, or held.
+  // Motions are unknowns with the expectation of their neighbours as an observation, or held.
   void add_motions() {
     std::vector<std::optional<ExpectedMotion>> expected(scene_.images.size());
     if (options_.estimate_motions) expected = expected_motions(scene_);
@@ -354,7 +354,7 @@ class Builder {
       network().terms.push_back(std::move(term));
   }
 
-  // The ground at the nadir lies above or below the nearest tie point as the points around it let expect.
+  // The points around the nadir predict how far the ground there is above or below the nearest one.
   void add_height_above_ground(std::size_t i) {
     const ObservedHeightAboveGround& seen = seen_.heights_above_ground[i];
     const auto pose = built_.pose_blocks[seen.image];

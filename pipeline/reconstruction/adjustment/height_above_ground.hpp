@@ -10,7 +10,7 @@ namespace waymark::pipeline {
 /// Ground straight below a camera, by the tie points near its nadir; z is up.
 struct GroundBelow {
   double height = 0;      ///< of a plane through the points at the nadir
-  double sd = 0;          ///< of `height`: the spread of the points about the plane, and their distance
+  double sd = 0;          ///< of `height`: the spread of the points about the plane
   std::size_t point = 0;  ///< the nearest tie point, index into `Reconstruction::points`
 };
 

@@ -6,14 +6,10 @@
 #include <map>
 #include <numbers>
 
+#include "core/solve.hpp"
+
 namespace waymark::pipeline {
 namespace {
-
-Eigen::Matrix3d rotation_by(const Eigen::Vector3d& turn) {
-  const double angle = turn.norm();
-  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
-  return Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
-}
 
 Eigen::Vector3d rotation_vector(const Eigen::Matrix3d& rotation) {
   const Eigen::AngleAxisd turn(rotation);

@@ -20,7 +20,7 @@ Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& world_from_camera, const S
 /// of the mark, not that of its prediction: residuals of a pixel differ by the motion during a row.
 Eigen::Isometry3d pose_of_mark(const Reconstruction& scene, const Mark& mark);
 
-/// Motion that the poses of neighbours in time let expect.
+/// Motion predicted by the poses of neighbours in time.
 struct ExpectedMotion {
   ShutterMotion motion = {};
   double shift_sd = 0;  ///< of each component, in the frame of the reconstruction
@@ -32,9 +32,9 @@ struct ExpectedMotion {
 /// Returns the motions of the images whose lens has a rolling shutter: the slope of the parabola through the
 /// poses of three neighbours in time. None for images without pose or time, or without a neighbour of another
 /// time in their component.
-/// - The deviations are what the third differences of the poses let expect, and at least 2 % of the motion
-/// and
-///   0.2 degrees per second.
+/// - The deviations follow from the third differences of the poses. They are at least 2 % of the motion and
+/// 0.2
+///   degrees per second.
 /// - Times in whole seconds add their rounding. Of fewer than four images the deviation is the motion itself.
 /// - Cost: one sort of the images.
 std::vector<std::optional<ExpectedMotion>> expected_motions(const Reconstruction& scene);

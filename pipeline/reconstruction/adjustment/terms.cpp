@@ -14,35 +14,55 @@ Eigen::Matrix3d cross_matrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-class MarkTerm final : public Term {
- public:
-  MarkTerm(const Observed& what, const BlockIndices& of, const LensModel& model, const Mark& mark)
-      : Term(what.kind, what.index, what.mark, of, 2), model_(model), pixel_(mark.pixel), sd_(mark.sd) {}
+/// Derivatives of the residual of a mark: by the point, and by a turn about the axes of the camera.
+struct MarkDerivatives {
+  Eigen::Matrix<double, 2, 3> by_world, by_turn;
+};
 
-  bool linearize(const double* const* values, Linear& out) const override {
-    const Eigen::Isometry3d pose = pose_of(values[1]);
+/// Mark of a point in an image of a lens, whatever moves the camera.
+class MarkOfLens {
+ public:
+  MarkOfLens(const LensModel& model, const Mark& mark) : model_(model), pixel_(mark.pixel), sd_(mark.sd) {}
+
+  /// Sets the residual and its derivative by block 0, the lens; `std::nullopt` behind the camera.
+  std::optional<MarkDerivatives> see(const double* lens, const double* world, const Eigen::Isometry3d& pose,
+                                     Term::Linear& out) const {
     const Eigen::Matrix3d camera_from_world = pose.linear().transpose();
     const Eigen::Vector3d point =
-        camera_from_world * (Eigen::Map<const Eigen::Vector3d>(values[2]) - pose.translation());
+        camera_from_world * (Eigen::Map<const Eigen::Vector3d>(world) - pose.translation());
     const auto count = static_cast<Eigen::Index>(model_.names().size());
     LensModel::Residual seen;
-    if (!model_.residual(Eigen::Map<const Eigen::VectorXd>(values[0], count), point, pixel_, seen))
-      return false;
+    if (!model_.residual(Eigen::Map<const Eigen::VectorXd>(lens, count), point, pixel_, seen)) return {};
     out.residual = seen.value / sd_;
     out.by_block[0] = seen.by_lens / sd_;
-    const Eigen::Matrix<double, 2, 3> by_world = seen.by_point * camera_from_world / sd_;
     // A turn w about the camera's axes moves the point in the camera by point x w.
-    out.by_block[1].resize(2, 6);
-    out.by_block[1].leftCols<3>() = seen.by_point * cross_matrix(point) / sd_;
-    out.by_block[1].rightCols<3>() = -by_world;
-    out.by_block[2] = by_world;
-    return true;
+    return MarkDerivatives{seen.by_point * camera_from_world / sd_,
+                           seen.by_point * cross_matrix(point) / sd_};
   }
 
  private:
   const LensModel& model_;
   Eigen::Vector2d pixel_;
   double sd_;
+};
+
+class MarkTerm final : public Term {
+ public:
+  MarkTerm(const Observed& what, const BlockIndices& of, const LensModel& model, const Mark& mark)
+      : Term(what.kind, what.index, what.mark, of, 2), mark_(model, mark) {}
+
+  bool linearize(const double* const* values, Linear& out) const override {
+    const auto seen = mark_.see(values[0], values[2], pose_of(values[1]), out);
+    if (!seen) return false;
+    out.by_block[1].resize(2, 6);
+    out.by_block[1].leftCols<3>() = seen->by_turn;
+    out.by_block[1].rightCols<3>() = -seen->by_world;
+    out.by_block[2] = seen->by_world;
+    return true;
+  }
+
+ private:
+  MarkOfLens mark_;
 };
 
 // Derivative of the turn vector of exp(v) exp(d) by d (Sola et al. 2018, eq. 143).
@@ -58,43 +78,28 @@ class MovingMarkTerm final : public Term {
  public:
   MovingMarkTerm(const Observed& what, const BlockIndices& of, const LensModel& model, const Mark& mark,
                  double readout_fraction)
-      : Term(what.kind, what.index, what.mark, of, 2),
-        model_(model),
-        pixel_(mark.pixel),
-        sd_(mark.sd),
-        fraction_(readout_fraction) {}
+      : Term(what.kind, what.index, what.mark, of, 2), mark_(model, mark), fraction_(readout_fraction) {}
 
   bool linearize(const double* const* values, Linear& out) const override {
     const Eigen::Isometry3d pose = pose_of(values[1]);
     const ShutterMotion motion{Eigen::Map<const Eigen::Vector3d>(values[2]),
                                Eigen::Map<const Eigen::Vector3d>(values[2] + 3)};
     const Eigen::Isometry3d moved = moved_pose(pose, motion, fraction_);
-    const Eigen::Matrix3d camera_from_world = moved.linear().transpose();
-    const Eigen::Vector3d point =
-        camera_from_world * (Eigen::Map<const Eigen::Vector3d>(values[3]) - moved.translation());
-    const auto count = static_cast<Eigen::Index>(model_.names().size());
-    LensModel::Residual seen;
-    if (!model_.residual(Eigen::Map<const Eigen::VectorXd>(values[0], count), point, pixel_, seen))
-      return false;
-    out.residual = seen.value / sd_;
-    out.by_block[0] = seen.by_lens / sd_;
-    const Eigen::Matrix<double, 2, 3> by_world = seen.by_point * camera_from_world / sd_;
-    // A turn about the axes of the moved camera moves the point in the camera by point x turn.
-    const Eigen::Matrix<double, 2, 3> by_turn = seen.by_point * cross_matrix(point) / sd_;
+    const auto seen = mark_.see(values[0], values[3], moved, out);
+    if (!seen) return false;
     out.by_block[1].resize(2, 6);
-    out.by_block[1].leftCols<3>() = by_turn * (moved.linear().transpose() * pose.linear());
-    out.by_block[1].rightCols<3>() = -by_world;
+    out.by_block[1].leftCols<3>() = seen->by_turn * (moved.linear().transpose() * pose.linear());
+    out.by_block[1].rightCols<3>() = -seen->by_world;
     out.by_block[2].resize(2, 6);
-    out.by_block[2].leftCols<3>() = -fraction_ * by_world;
-    out.by_block[2].rightCols<3>() = fraction_ * by_turn * right_jacobian(fraction_ * motion.turn);
-    out.by_block[3] = by_world;
+    out.by_block[2].leftCols<3>() = -fraction_ * seen->by_world;
+    out.by_block[2].rightCols<3>() = fraction_ * seen->by_turn * right_jacobian(fraction_ * motion.turn);
+    out.by_block[3] = seen->by_world;
     return true;
   }
 
  private:
-  const LensModel& model_;
-  Eigen::Vector2d pixel_;
-  double sd_, fraction_;
+  MarkOfLens mark_;
+  double fraction_;
 };
 
 // The deviation is a fraction of the distance between the outer centres: it grows with the frame, or a

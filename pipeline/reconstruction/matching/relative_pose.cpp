@@ -35,15 +35,10 @@ bool is_before_both(const RelativePose& pose, const RayPair& rays, double thresh
   return tb * c - ta > 0 && tb - c * ta > 0;
 }
 
-Eigen::Matrix3d turn_by(const Eigen::Vector3d& vector) {
-  const double angle = vector.norm();
-  return angle > 0 ? Eigen::AngleAxisd(angle, vector / angle).toRotationMatrix()
-                   : Eigen::Matrix3d::Identity();
-}
-
 RelativePose moved(const RelativePose& pose, const Eigen::Matrix<double, 5, 1>& step) {
   const Eigen::Vector3d u = pose.direction.unitOrthogonal(), v = pose.direction.cross(u);
-  return {turn_by(step.head<3>()) * pose.rotation, (pose.direction + step[3] * u + step[4] * v).normalized()};
+  return {rotation_by(step.head<3>()) * pose.rotation,
+          (pose.direction + step[3] * u + step[4] * v).normalized()};
 }
 
 }  // namespace

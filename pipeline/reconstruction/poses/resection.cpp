@@ -62,7 +62,7 @@ std::vector<Eigen::Isometry3d> three_point_poses(const std::array<Eigen::Vector3
     const Eigen::Vector3d t(shifts[k].at<double>(0), shifts[k].at<double>(1), shifts[k].at<double>(2));
     if (!w.allFinite() || !t.allFinite()) continue;
     Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-    if (w.norm() > 0) pose.linear() = Eigen::AngleAxisd(w.norm(), w.normalized()).toRotationMatrix();
+    pose.linear() = rotation_by(w);
     pose.translation() = t;
     poses.push_back(pose);
   }
@@ -71,9 +71,7 @@ std::vector<Eigen::Isometry3d> three_point_poses(const std::array<Eigen::Vector3
 
 Eigen::Isometry3d nudged(const Eigen::Isometry3d& pose, const Eigen::Matrix<double, 6, 1>& step) {
   Eigen::Isometry3d out = pose;
-  const double angle = step.head<3>().norm();
-  if (angle > 0)
-    out.linear() = Eigen::AngleAxisd(angle, step.head<3>() / angle).toRotationMatrix() * pose.linear();
+  out.linear() = rotation_by(step.head<3>()) * pose.linear();
   out.translation() += step.tail<3>();
   return out;
 }

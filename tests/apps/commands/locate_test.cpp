@@ -99,7 +99,7 @@ TEST_F(Locate, FindsImagesAnywhere) {
     files.push_back(folder_ / ("image" + std::to_string(i) + ".csv"));
     write_text(files.back(), detections(craters_, views.back(), random));
   }
-  files.insert(files.end(), {"--size", "1024", "1024", "--focal", "1500", "-o", folder_ / "places.csv",
+  files.insert(files.end(), {"--size", "1024", "1024", "--focal", "1500", "-o", folder_ / "positions.csv",
                              "--matches", folder_ / "matches.csv", "--format", "json"});
   const Outcome said = waymark(words(files));
   ASSERT_EQ(said.code, 0) << said.err;
@@ -108,18 +108,18 @@ TEST_F(Locate, FindsImagesAnywhere) {
   int right = 0;
   double nees = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const json& place = result["places"][i];
-    if (!place["located"]) continue;
-    const double north = (double(place["lat_deg"]) - views[i].lat) * kDegree * kMoon,
-                 east = std::remainder(double(place["lon_deg"]) - views[i].lon, 360) * kDegree * kMoon *
+    const json& image = result["images"][i];
+    if (!image["located"]) continue;
+    const double north = (double(image["lat_deg"]) - views[i].lat) * kDegree * kMoon,
+                 east = std::remainder(double(image["lon_deg"]) - views[i].lon, 360) * kDegree * kMoon *
                         std::cos(views[i].lat * kDegree);
     const double pixel = views[i].altitude / kFocal;
     EXPECT_LT(std::hypot(north, east), 20 * pixel) << i;
-    EXPECT_NEAR(double(place["altitude_m"]), views[i].altitude, 0.02 * views[i].altitude) << i;
-    EXPECT_NEAR(std::remainder(double(place["azimuth_deg"]) * kDegree - views[i].azimuth, 2 * kPi), 0, 0.02)
+    EXPECT_NEAR(double(image["altitude_m"]), views[i].altitude, 0.02 * views[i].altitude) << i;
+    EXPECT_NEAR(std::remainder(double(image["azimuth_deg"]) * kDegree - views[i].azimuth, 2 * kPi), 0, 0.02)
         << i;
-    EXPECT_LT(double(place["wrong_probability"]), 1e-3);
-    const auto& c = place["covariance"];
+    EXPECT_LT(double(image["wrong_probability"]), 1e-3);
+    const auto& c = image["covariance"];
     const double a = c[0][0], b = c[0][1], d = c[1][1];
     nees += (d * east * east - 2 * b * east * north + a * north * north) / (a * d - b * b) / 2;
     ++right;
@@ -127,7 +127,7 @@ TEST_F(Locate, FindsImagesAnywhere) {
   EXPECT_GE(right, 11);
   EXPECT_LT(nees / right, 3);  // 24 degrees of freedom, and errors of the covariances
   EXPECT_GT(nees / right, 0.2);
-  EXPECT_THAT(text_of(folder_ / "places.csv"), HasSubstr("wrong_probability"));
+  EXPECT_THAT(text_of(folder_ / "positions.csv"), HasSubstr("wrong_probability"));
   EXPECT_THAT(text_of(folder_ / "matches.csv"), HasSubstr(",c"));
 }
 

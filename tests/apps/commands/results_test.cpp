@@ -213,10 +213,10 @@ class Results : public testing::Test {
               std::to_string(random.uniform(10, 60)) + "\n";
     write_text(folder_ / "seen.csv", seen);
     const std::string map = import_table("moon", craters, "crater", "IAU_2015:30100");
-    const ResultObject places = result({"locate", map, folder_ / "seen.csv", "--size", "500", "500"});
-    EXPECT_EQ(places["craters"], 200);
-    EXPECT_EQ(places["located"], 0);
-    EXPECT_EQ(places["places"][0]["detected"], 5);
+    const ResultObject found = result({"locate", map, folder_ / "seen.csv", "--size", "500", "500"});
+    EXPECT_EQ(found["craters"], 200);
+    EXPECT_EQ(found["located"], 0);
+    EXPECT_EQ(found["images"][0]["detected"], 5);
   }
 
   /// A map of all craters of a catalogue, moved by 5 km and turned by a right angle.

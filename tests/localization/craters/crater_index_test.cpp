@@ -127,7 +127,7 @@ TEST(ImagePoses, PixelsAndGroundAgree) {
       const auto back = camera.project(pose, *ground, surface.up(*ground));
       ASSERT_TRUE(back);
       EXPECT_NEAR((back->at - pixel).norm(), 0, 1e-5);
-      const LonLat at = surface.lon_lat(*ground);
+      const LonLat at = surface.geodetic(*ground).at;
       EXPECT_NEAR((surface.point(at) - *ground).norm(), 0, 1e-3);
       EXPECT_NEAR((pose.axes.transpose() * pose.axes - Eigen::Matrix3d::Identity()).norm(), 0, 1e-9);
     }
@@ -141,7 +141,7 @@ TEST(ImagePoses, StepsAreMetresScaleTurnAndTilt) {
   ImagePose::Step step;
   step << 1000, 0, 0.1, 0.2, 0.01, -0.02;
   const ImagePose moved = north_up.moved(step, surface);
-  const LonLat at = surface.lon_lat(moved.ground);
+  const LonLat at = surface.geodetic(moved.ground).at;
   EXPECT_NEAR(at.lon, 30 + 1000 / (1737400 * std::cos(20 * std::numbers::pi / 180)) * 180 / std::numbers::pi,
               1e-5);
   EXPECT_NEAR(at.lat, 20, 1e-4);
@@ -299,7 +299,7 @@ TEST(CraterIndex, SaysWhyNot) {
   std::vector<ImageCrater> bad(9, ImageCrater{{NAN, 0}, 3});
   EXPECT_EQ(index.find({.craters = bad}).reason, "too few craters in the image");
   for (std::size_t i = 0; i < bad.size(); ++i) bad[i] = {{10.0 * double(i), 5}, 3};  // on a line
-  EXPECT_EQ(index.find({.craters = bad}).reason, "no place has such craters");
+  EXPECT_EQ(index.find({.craters = bad}).reason, "no position has such craters");
   EXPECT_THROW(CraterIndex({{Eigen::Vector3d::UnitX(), -1, 0}}, moon()), std::invalid_argument);
 }
 

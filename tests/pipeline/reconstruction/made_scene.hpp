@@ -64,6 +64,28 @@ inline std::vector<pipeline::Mark> marks_of(const pipeline::Reconstruction& trut
   return marks;
 }
 
+/// Moves poses and points by about a hundredth of a radian and half a metre: a start that an adjustment
+/// mends.
+inline void disturb(pipeline::Reconstruction& scene, Random& random) {
+  for (pipeline::AdjustedImage& image : scene.images) {
+    const Eigen::Vector3d turn = normal_vector(random, 0.01);
+    image.world_from_camera->linear() *= Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
+    image.world_from_camera->translation() += normal_vector(random, 0.5);
+  }
+  for (pipeline::TiePoint& point : scene.points) *point.position += normal_vector(random, 0.5);
+}
+
+/// Returns the error of a pose: rotation vector about the camera's axes, then centre.
+inline Eigen::Matrix<double, 6, 1> pose_error(const pipeline::AdjustedImage& found,
+                                              const pipeline::AdjustedImage& truth) {
+  const Eigen::AngleAxisd turn(
+      Eigen::Matrix3d(truth.world_from_camera->linear().transpose() * found.world_from_camera->linear()));
+  Eigen::Matrix<double, 6, 1> error;
+  error << turn.angle() * turn.axis(),
+      found.world_from_camera->translation() - truth.world_from_camera->translation();
+  return error;
+}
+
 inline MadeScene made_scene(const MadeSceneOptions& o) {
   Random random(o.seed, "scene");
   MadeScene scene;
@@ -90,12 +112,7 @@ inline MadeScene made_scene(const MadeSceneOptions& o) {
     if (point.marks.size() >= 2) truth.points.push_back(point);
   }
   scene.start = truth;
-  for (pipeline::AdjustedImage& image : scene.start.images) {
-    const Eigen::Vector3d turn = normal_vector(random, 0.01);
-    image.world_from_camera->linear() *= Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-    image.world_from_camera->translation() += normal_vector(random, 0.5);
-  }
-  for (pipeline::TiePoint& point : scene.start.points) *point.position += normal_vector(random, 0.5);
+  disturb(scene.start, random);
   return scene;
 }
 

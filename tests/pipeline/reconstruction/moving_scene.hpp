@@ -87,13 +87,8 @@ inline MadeScene moving_scene(const MovingSceneOptions& o) {
     if (point.marks.size() >= 2) truth.points.push_back(point);
   }
   scene.start = truth;
-  for (pipeline::AdjustedImage& image : scene.start.images) {
-    const Eigen::Vector3d turn = normal_vector(random, 0.01);
-    image.world_from_camera->linear() *= Eigen::AngleAxisd(turn.norm(), turn.normalized()).toRotationMatrix();
-    image.world_from_camera->translation() += normal_vector(random, 0.5);
-    image.motion.reset();
-  }
-  for (pipeline::TiePoint& point : scene.start.points) *point.position += normal_vector(random, 0.5);
+  disturb(scene.start, random);
+  for (pipeline::AdjustedImage& image : scene.start.images) image.motion.reset();
   return scene;
 }
 

@@ -17,16 +17,6 @@ namespace {
 using namespace pipeline;
 using ::testing::HasSubstr;
 
-// Rotation about the camera's axes, then centre.
-Eigen::Matrix<double, 6, 1> pose_error(const AdjustedImage& found, const AdjustedImage& truth) {
-  const Eigen::AngleAxisd turn(
-      Eigen::Matrix3d(truth.world_from_camera->linear().transpose() * found.world_from_camera->linear()));
-  Eigen::Matrix<double, 6, 1> error;
-  error << turn.angle() * turn.axis(),
-      found.world_from_camera->translation() - truth.world_from_camera->translation();
-  return error;
-}
-
 // Mean of error^T covariance^-1 error / 6.
 double pose_chi2(const Reconstruction& found, const Reconstruction& truth) {
   double sum = 0;

@@ -14,15 +14,6 @@ namespace waymark::test {
 namespace {
 using namespace pipeline;
 
-Eigen::Matrix<double, 6, 1> moving_pose_error(const AdjustedImage& found, const AdjustedImage& truth) {
-  const Eigen::AngleAxisd turn(
-      Eigen::Matrix3d(truth.world_from_camera->linear().transpose() * found.world_from_camera->linear()));
-  Eigen::Matrix<double, 6, 1> error;
-  error << turn.angle() * turn.axis(),
-      found.world_from_camera->translation() - truth.world_from_camera->translation();
-  return error;
-}
-
 /// Root mean square errors of poses, and their mean square against their covariance, per component.
 struct MovingFigures {
   double position = 0, degrees = 0, chi2 = 0, sigma0 = 0, scenes = 0;
@@ -31,7 +22,7 @@ struct MovingFigures {
     double metres = 0, radians = 0, squares = 0;
     const auto count = double(found.images.size());
     for (std::size_t i = 0; i < found.images.size(); ++i) {
-      const auto error = moving_pose_error(found.images[i], truth.images[i]);
+      const auto error = pose_error(found.images[i], truth.images[i]);
       radians += error.head<3>().squaredNorm() / count;
       metres += error.tail<3>().squaredNorm() / count;
       squares += error.dot(found.images[i].covariance->ldlt().solve(error)) / 6 / count;
@@ -64,7 +55,7 @@ TEST(ShutterMotion, ExactMarksGiveTheTruth) {
   EXPECT_TRUE(adjust(made.start, seen, keep_all()).converged);
   for (std::size_t i = 0; i < made.truth.images.size(); ++i) {
     // The expected motions have errors, but less and less weight.
-    const auto error = moving_pose_error(made.start.images[i], made.truth.images[i]);
+    const auto error = pose_error(made.start.images[i], made.truth.images[i]);
     EXPECT_LT(error.head<3>().norm(), 5e-5) << i;
     EXPECT_LT(error.tail<3>().norm(), 5e-3) << i;
   }
@@ -155,7 +146,7 @@ TEST(ShutterMotion, TurnsAndGrowsWithTheFrame) {
   EXPECT_NEAR(length(loose) / length(made.start), 1, 0.1);  // nor do they draw it together
 }
 
-// Poses without the model, with the motions that neighbours let expect, and with estimated motions.
+// Poses without the model, with the motions that neighbours predict, and with estimated motions.
 TEST(ShutterMotion, EstimatedMotionsGiveTheBestPosesAndTrueCovariances) {
   for (const double wobble : {0.0, 0.05}) {
     MovingFigures none, held, estimated;

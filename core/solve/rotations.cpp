@@ -10,4 +10,10 @@ Eigen::Matrix3d rotation_between(const Eigen::Vector3d& from, const Eigen::Vecto
   return Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
 }
 
+Eigen::Matrix3d rotation_by(const Eigen::Vector3d& rotation_vector) {
+  const double angle = rotation_vector.norm();
+  if (!(angle > 0)) return Eigen::Matrix3d::Identity();
+  return Eigen::AngleAxisd(angle, rotation_vector / angle).toRotationMatrix();
+}
+
 }  // namespace waymark::inline core

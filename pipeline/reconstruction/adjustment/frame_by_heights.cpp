@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pipeline/reconstruction/adjustment/local_frame.hpp"
+#include "pipeline/reconstruction/adjustment/frame_by_heights.hpp"
 
 #include <fmt/format.h>
 
@@ -80,7 +80,8 @@ ScaleByHeights scale_by_heights(const Reconstruction& level, const Observations&
 
 }  // namespace
 
-LocalFrameResult local_frame(const Reconstruction& scene, const Observations& seen, std::size_t component) {
+FrameByHeightsResult frame_by_heights(const Reconstruction& scene, const Observations& seen,
+                                      std::size_t component) {
   ReliefToPlace relief;
   std::vector<Eigen::Vector3d> points, centres;
   const AdjustedImage* first = nullptr;
@@ -99,7 +100,7 @@ LocalFrameResult local_frame(const Reconstruction& scene, const Observations& se
       up += scene.images[o.image].world_from_camera->linear() * o.up_in_camera.normalized();
   relief.points = points, relief.centres = centres;
   if (up.norm() > 0) relief.up = up.normalized();
-  LocalFrame frame{.local_from_frame = level_relief(relief).level_from_frame};
+  FrameByHeights frame{.local_from_frame = level_relief(relief).level_from_frame};
   Reconstruction level = scene;
   transform(level, component, frame.local_from_frame);
 

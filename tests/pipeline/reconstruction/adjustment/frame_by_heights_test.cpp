@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Heights of cameras as the only reference.
-#include "pipeline/reconstruction/adjustment/local_frame.hpp"
+#include "pipeline/reconstruction/adjustment/frame_by_heights.hpp"
 
 #include <gmock/gmock.h>
 
@@ -27,7 +27,7 @@ LooseBlock loose_block(std::uint64_t seed, double relief, double climb) {
   LooseBlock block{.made = made_scene({.seed = seed, .relief = relief, .points = 800}), .seen = {}};
   MadeScene& made = block.made;
   if (climb > 0) {
-    // Lines at different heights: the marks are made anew.
+    // Lines at different heights: the marks are made again.
     Random random(seed, "climb");
     for (std::size_t i = 0; i < made.truth.images.size(); ++i) {
       made.truth.images[i].world_from_camera->translation().z() += climb * double(i / 4);
@@ -98,13 +98,13 @@ TEST(GroundBelow, IsThePlaneOfThePointsAtTheNadir) {
   EXPECT_FALSE(ground_below(bare, 0));
 }
 
-TEST(LocalFrame, HeightsAboveGroundGiveTheTrueSize) {
+TEST(FrameByHeights, HeightsAboveGroundGiveTheTrueSize) {
   double chi2 = 0;
   constexpr int kScenes = 20;
   for (std::uint64_t seed = 1; seed <= kScenes; ++seed) {
     LooseBlock block = loose_block(seed, 3, 0);
     block.seen.heights_above_ground = readings_over(block.made, 3, 0.5, seed);
-    const LocalFrameResult placed = local_frame(block.made.start, block.seen, 0);
+    const FrameByHeightsResult placed = frame_by_heights(block.made.start, block.seen, 0);
     ASSERT_TRUE(placed.found) << placed.message;
     Reconstruction scene = block.made.start;
     transform(scene, 0, placed.found->local_from_frame);
@@ -131,13 +131,13 @@ TEST(LocalFrame, HeightsAboveGroundGiveTheTrueSize) {
   EXPECT_GT(chi2, 0.1);  // the adjustment is better than the start, whose deviation is stated
 }
 
-TEST(LocalFrame, OtherHeightsGiveItIfTheyDiffer) {
+TEST(FrameByHeights, OtherHeightsGiveItIfTheyDiffer) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     LooseBlock block = loose_block(seed, 3, 25);
     for (std::size_t i = 0; i < block.made.truth.images.size(); ++i)
       block.seen.heights.push_back(
           {i, block.made.truth.images[i].world_from_camera->translation().z() + 420, 0.5, true});
-    const LocalFrameResult placed = local_frame(block.made.start, block.seen, 0);
+    const FrameByHeightsResult placed = frame_by_heights(block.made.start, block.seen, 0);
     ASSERT_TRUE(placed.found) << placed.message;
     Reconstruction scene = block.made.start;
     transform(scene, 0, placed.found->local_from_frame);
@@ -147,23 +147,23 @@ TEST(LocalFrame, OtherHeightsGiveItIfTheyDiffer) {
   LooseBlock flat = loose_block(1, 3, 0);
   for (std::size_t i = 0; i < flat.made.truth.images.size(); ++i)
     flat.seen.heights.push_back({i, 100, 0.5, true});
-  const LocalFrameResult none = local_frame(flat.made.start, flat.seen, 0);
+  const FrameByHeightsResult none = frame_by_heights(flat.made.start, flat.seen, 0);
   EXPECT_FALSE(none.found);
   EXPECT_THAT(none.message, HasSubstr("give its scale only within"));
 }
 
-TEST(LocalFrame, OneReadingIsTooFew) {
+TEST(FrameByHeights, OneReadingIsTooFew) {
   LooseBlock block = loose_block(1, 3, 0);
   block.seen.heights_above_ground = readings_over(block.made, 3, 0.5, 1);
   block.seen.heights_above_ground.resize(1);
-  EXPECT_THAT(local_frame(block.made.start, block.seen, 0).message, HasSubstr("and 2 are needed"));
+  EXPECT_THAT(frame_by_heights(block.made.start, block.seen, 0).message, HasSubstr("and 2 are needed"));
 }
 
-TEST(LocalFrame, AWrongReadingIsLeftOut) {
+TEST(FrameByHeights, AWrongReadingIsLeftOut) {
   LooseBlock block = loose_block(2, 3, 0);
   block.seen.heights_above_ground = readings_over(block.made, 3, 0.5, 2);
   block.seen.heights_above_ground[3].height += 40;
-  const LocalFrameResult placed = local_frame(block.made.start, block.seen, 0);
+  const FrameByHeightsResult placed = frame_by_heights(block.made.start, block.seen, 0);
   ASSERT_TRUE(placed.found) << placed.message;
   Reconstruction scene = block.made.start;
   transform(scene, 0, placed.found->local_from_frame);

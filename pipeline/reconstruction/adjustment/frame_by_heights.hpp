@@ -9,14 +9,14 @@
 namespace waymark::pipeline {
 
 /// Frame of true size whose position and direction are conventional.
-struct LocalFrame {
+struct FrameByHeights {
   Similarity local_from_frame = {};
   std::size_t readings = 0;  ///< that give the scale
   double scale_sd = 0;       ///< as a fraction of the scale
 };
 
-struct LocalFrameResult {
-  std::optional<LocalFrame> found = {};
+struct FrameByHeightsResult {
+  std::optional<FrameByHeights> found = {};
   std::string message = {};  ///< why there is none
 };
 
@@ -25,6 +25,7 @@ struct LocalFrameResult {
 /// over those of the cameras. The ground below the first image by name has the height 0 (with other heights:
 /// theirs), and the upper edge of that image points north. Refused for fewer than 2 heights, and if the scale
 /// has a deviation of more than 5 %.
-LocalFrameResult local_frame(const Reconstruction& scene, const Observations& seen, std::size_t component);
+FrameByHeightsResult frame_by_heights(const Reconstruction& scene, const Observations& seen,
+                                      std::size_t component);
 
 }  // namespace waymark::pipeline
