@@ -2,9 +2,11 @@
 #include "geo/camera.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "core/solve.hpp"
 #include "geo/distortion_limit.hpp"
 
 namespace waymark::inline geo {
@@ -121,7 +123,44 @@ std::optional<Eigen::Vector3d> undistort_fisheye(const Camera& camera, const Eig
   return Eigen::Vector3d(goal.x() / radius * sine, goal.y() / radius * sine, std::cos(*theta));
 }
 
+std::optional<Eigen::Vector2d> project_from(const Camera& camera, const Eigen::Isometry3d& pose,
+                                            const Eigen::Vector3d& point) {
+  // Subtracting the centre first preserves millimetres for northings of seven digits.
+  const Eigen::Vector3d away = point - pose.translation();
+  return project(camera, Point<CameraFrame>{pose.linear().transpose() * away});
+}
+
+// The motion is held beyond half an image from the border: points far outside must not make it endless.
+Eigen::Isometry3d pose_at_row(const PosedCamera& view, double row) {
+  return moved_pose(view.grid_from_camera.transform, *view.motion,
+                    std::clamp(readout_fraction(view.camera, row), -1.0, 1.0));
+}
+
+std::optional<Eigen::Vector2d> project_moving(const PosedCamera& view, const Eigen::Vector3d& point) {
+  constexpr int kSteps = 50;
+  constexpr double kClose = 1e-6;  // px
+  auto seen = project_from(view.camera, view.grid_from_camera.transform, point);
+  for (int step = 0; step < kSteps && seen; ++step) {
+    const double row = seen->y();
+    seen = project_from(view.camera, pose_at_row(view, row), point);
+    if (seen && std::abs(seen->y() - row) < kClose) return seen;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+double readout_fraction(const Camera& camera, double row) {
+  return camera.rows > 1 ? row / static_cast<double>(camera.rows - 1) - 0.5 : 0;
+}
+
+Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& world_from_camera, const ShutterMotion& motion,
+                             double fraction) {
+  Eigen::Isometry3d pose = world_from_camera;
+  pose.linear() = world_from_camera.linear() * rotation_by(fraction * motion.turn);
+  pose.translation() += fraction * motion.shift;
+  return pose;
+}
 
 std::optional<Eigen::Vector2d> project(const Camera& camera, const Point<CameraFrame>& point) {
   const Eigen::Vector3d& at = point.xyz;
@@ -159,14 +198,14 @@ std::optional<Direction<CameraFrame>> ray(const Camera& camera, const Eigen::Vec
 std::optional<Ray<GridFrame>> ray(const PosedCamera& view, const Eigen::Vector2d& pixel) {
   const auto along = ray(view.camera, pixel);
   if (!along) return std::nullopt;
-  return Ray<GridFrame>{view.centre(), view.grid_from_camera * *along};
+  if (!view.motion) return Ray<GridFrame>{view.centre(), view.grid_from_camera * *along};
+  const Eigen::Isometry3d pose = pose_at_row(view, pixel.y());
+  return Ray<GridFrame>{{pose.translation()}, {pose.linear() * along->unit}};
 }
 
 std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<GridFrame>& point) {
-  // Subtracting the centre first preserves millimetres for northings of seven digits.
-  const Eigen::Vector3d away = point.xyz - view.grid_from_camera.transform.translation();
-  return project(view.camera,
-                 Point<CameraFrame>{view.grid_from_camera.transform.linear().transpose() * away});
+  return view.motion ? project_moving(view, point.xyz)
+                     : project_from(view.camera, view.grid_from_camera.transform, point.xyz);
 }
 
 }  // namespace waymark::inline geo

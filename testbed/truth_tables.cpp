@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "testbed/landing/flight.hpp"
 #include "testbed/scene_files.hpp"
 
 namespace waymark::testbed {
@@ -37,9 +38,9 @@ Appearances list_appearances(const Thing& thing, const char* type, std::size_t i
 
 }  // namespace
 
-TruthTables truth_tables(const Scenario&, const Scene& scene, const std::vector<Shot>& shots) {
+TruthTables truth_tables(const Scenario& scenario, const Scene& scene, const std::vector<Shot>& shots) {
   std::vector<View> views;
-  for (const Shot& shot : shots) views.push_back(camera_view(shot.view));
+  for (const Shot& shot : shots) views.push_back(camera_view(true_camera(shot, scenario.exposure.readout_time)));
   TruthTables tables;
   tables.detections = "image,type,x,y,diameter,major,minor,angle,landmark\n";
   tables.landmarks = tables.ignored =

@@ -34,6 +34,10 @@ OrderedJson lens_json(const CameraFileLens& from) {
   return lens;
 }
 
+OrderedJson vector_json(const Eigen::Vector3d& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
 std::string lens_name(std::size_t index) {
   return fmt::format("lens_{}", index + 1);
 }
@@ -64,9 +68,11 @@ std::string camera_file_text(const CameraFileContent& content) {
   for (const CameraFileImage& image : content.images) {
     OrderedJson entry{{"name", image.name}, {"camera", lens_name(image.lens)}};
     if (const auto& pose = image.world_from_camera) {
-      entry["centre"] = {pose->translation().x(), pose->translation().y(), pose->translation().z()};
+      entry["centre"] = vector_json(pose->translation());
       entry["rotation"] = matrix_json(pose->linear());
       if (image.covariance) entry["covariance"] = matrix_json(*image.covariance);
+      if (const auto& motion = image.motion)
+        entry["motion"] = {{"shift", vector_json(motion->shift)}, {"turn", vector_json(motion->turn)}};
     }
     if (image.sun)
       entry["sun"] = {{"azimuth", image.sun->azimuth.value},

@@ -14,6 +14,7 @@ struct CameraFileImage {
   std::size_t lens = 0;                                        ///< index into `CameraFileContent::lenses`
   std::optional<Eigen::Isometry3d> world_from_camera = {};     ///< OpenCV axes
   std::optional<Eigen::Matrix<double, 6, 6>> covariance = {};  ///< as in PosedCamera
+  std::optional<ShutterMotion> motion = {};                    ///< as in PosedCamera
   std::optional<Sun> sun = {};
   std::string taken_utc = {};  ///< ISO 8601; empty: unknown
 };

@@ -39,6 +39,7 @@ struct CameraRecord {
   std::optional<Camera> camera = {};  ///< columns and rows 0: unknown; cx, cy NaN: the middle
   std::optional<Eigen::Isometry3d> world_from_camera = {};     ///< OpenCV axes: x right, y down, z forward
   std::optional<Eigen::Matrix<double, 6, 6>> covariance = {};  ///< as in PosedCamera, in the world's axes
+  std::optional<ShutterMotion> motion = {};                    ///< its shift in the world's axes
   std::optional<Sun> sun = {};
   std::optional<Eigen::Vector3d> towards_sun = {};  ///< in the world's axes, any length
   std::optional<Degrees> image_sun_angle = {};

@@ -82,7 +82,10 @@ class Placer {
       view.camera = *record.camera;
       view.grid_from_camera.transform.translation() = at(pose.translation());
       view.grid_from_camera.transform.linear() = turn.rotation * pose.linear();
-      view.covariance = covariance_of(record, import_, turn.rotation, similarity_ ? similarity_->scale : 1);
+      const double scale = similarity_ ? similarity_->scale : 1;
+      view.covariance = covariance_of(record, import_, turn.rotation, scale);
+      if (const auto& motion = record.motion)
+        view.motion = {.shift = scale * turn.rotation * motion->shift, .turn = motion->turn};
       check_place(view, record, turn.stretch);
       image.view = view;
       if (record.towards_sun && !image.sun)

@@ -44,7 +44,7 @@ void read(const Json& json, Eigen::MatrixBase<Matrix>& into) {
 
 Json json_of(const PosedCamera& view) {
   const Camera& c = view.camera;
-  return {{"size", {c.columns, c.rows}},
+  Json json{{"size", {c.columns, c.rows}},
           {"focal", {c.fx, c.fy}},
           {"centre", {c.cx, c.cy}},
           {"skew", c.skew},
@@ -52,6 +52,9 @@ Json json_of(const PosedCamera& view) {
           {"distortion", c.distortion},
           {"pose", json_of(view.grid_from_camera.transform.affine())},
           {"covariance", json_of(view.covariance)}};
+  if (const auto& m = view.motion)
+    json["motion"] = {{"shift", json_of(m->shift)}, {"turn", json_of(m->turn)}};
+  return json;
 }
 
 PosedCamera view_of(const Json& json) {
@@ -71,6 +74,11 @@ PosedCamera view_of(const Json& json) {
   view.grid_from_camera.transform.linear() = pose.leftCols<3>();
   view.grid_from_camera.transform.translation() = pose.col(3);
   read(json.at("covariance"), view.covariance);
+  if (json.contains("motion")) {
+    view.motion.emplace();
+    read(json["motion"].at("shift"), view.motion->shift);
+    read(json["motion"].at("turn"), view.motion->turn);
+  }
   return view;
 }
 

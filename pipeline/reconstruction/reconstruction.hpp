@@ -31,19 +31,12 @@ struct AdjustedLens {
   double readout_time = 0;  ///< s from the first row to the last: a rolling shutter; 0: global
 };
 
-/// Motion of a camera from the first row of its image to the last, at constant velocity. A row is taken when
-/// its fraction of this motion, counted from the middle row, is done: the pose of the image is that of its
-/// middle row.
-struct ShutterMotion {
-  Eigen::Vector3d shift = Eigen::Vector3d::Zero();  ///< of the centre, in the frame of the reconstruction
-  Eigen::Vector3d turn = Eigen::Vector3d::Zero();   ///< rotation vector about the axes of the camera, radians
-};
-
 /// Image with its pose, if it has one.
 struct AdjustedImage {
   std::string name = {};
   std::size_t lens = 0;                                     ///< index into `Reconstruction::lenses`
-  std::optional<Eigen::Isometry3d> world_from_camera = {};  ///< OpenCV axes: x right, y down, z forward
+  /// Of the middle row. OpenCV axes: x right, y down, z forward.
+  std::optional<Eigen::Isometry3d> world_from_camera = {};
   /// Of the rotation (radians, about the axes of the camera), then of the centre, as in PosedCamera.
   std::optional<Eigen::Matrix<double, 6, 6>> covariance = {};
   std::size_t component = 0;        ///< images of different components share no tie points

@@ -42,7 +42,7 @@ struct ValueLandmarks {
   static StageSpec spec() {
     return {.name = "value_landmarks",
             .summary = "Values landmarks: multiplicity, spread of features, probability of existence",
-            .version = 8,
+            .version = 9,
             .scope = Scope::map,
             .inputs = {dem, aligned_views, ValuedParts::merged, ValuedParts::merged_evidence},
             .outputs = {ValuedParts::landmarks, ValuedParts::evidence, ValuedParts::rejected, image_views}};

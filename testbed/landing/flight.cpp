@@ -176,6 +176,15 @@ View view_of(const Shot& shot) {
   return view;
 }
 
+PosedCamera true_camera(const Shot& shot, double readout_time) {
+  PosedCamera camera = shot.view;
+  const Eigen::Matrix3d camera_from_grid = camera.grid_from_camera.transform.linear().transpose();
+  if (readout_time > 0)
+    camera.motion = {.shift = readout_time * shot.motion.velocity,
+                     .turn = readout_time * camera_from_grid * shot.motion.spin};
+  return camera;
+}
+
 SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots) {
   SiteModel ground = scenario.ground;
   if (ground.width > 0 && ground.height > 0) return ground;

@@ -23,6 +23,9 @@ std::vector<Shot> plan_shots(const Scenario& scenario);
 /// Returns what a camera sees of a shot: its pose, motion, dust and heat shield.
 View view_of(const Shot& shot);
 
+/// Returns the true camera of a shot, with its motion if rows are read out one after the other.
+PosedCamera true_camera(const Shot& shot, double readout_time);
+
 /// Returns the site with width and height filled in where they are 0: the footprints of all images on level
 /// ground at its mean height, plus a tenth. Throws Error{usage} for a camera that sees the sky.
 SiteModel size_site(const Scenario& scenario, const std::vector<Shot>& shots);

@@ -193,6 +193,45 @@ TEST(PosedCamera, PreservesMillimetresAtLargeNorthings) {
   EXPECT_LT((*project(view, ground) - Eigen::Vector2d(100, 700)).norm(), 1e-6);
 }
 
+// The slow twin: the ray of each row, and the row nearest to the point among them, by halving.
+TEST(PosedCamera, OfARollingShutterAgreesWithItsRays) {
+  Uniform uniform(5);
+  for (int scene = 0; scene < 200; ++scene) {
+    PosedCamera view;
+    view.camera = camera({-0.1, 0.02, 1e-3, -1e-3});
+    view.grid_from_camera.transform.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    view.grid_from_camera.transform.translation() << 500000, 7000000, 150;
+    view.motion.emplace();
+    for (int k = 0; k < 3; ++k) {
+      view.motion->shift(k) = uniform(-5, 5);
+      view.motion->turn(k) = uniform(-0.03, 0.03);
+    }
+    for (int i = 0; i < 20; ++i) {
+      const Eigen::Vector2d pixel(uniform(0, 999), uniform(0, 799));
+      const auto along = ray(view, pixel);
+      ASSERT_TRUE(along);
+      const Eigen::Vector3d moved = (pixel.y() / 799 - 0.5) * view.motion->shift;
+      EXPECT_LT((along->origin.xyz - view.centre().xyz - moved).norm(), 1e-9);
+      const Point<GridFrame> ground{along->origin.xyz + along->direction.unit * uniform(50, 300)};
+      const auto seen = project(view, ground);
+      ASSERT_TRUE(seen);
+      EXPECT_LT((*seen - pixel).norm(), 1e-4);
+    }
+  }
+}
+
+TEST(PosedCamera, WithoutMotionIsThatOfAGlobalShutter) {
+  PosedCamera still;
+  still.camera = camera({-0.1, 0.02});
+  still.grid_from_camera.transform.translation() << 1, 2, -50;
+  PosedCamera moving = still;
+  moving.motion.emplace();
+  const Point<GridFrame> point{{10, -7, 3}};
+  EXPECT_LT((*project(still, point) - *project(moving, point)).norm(), 1e-9);
+  EXPECT_LT((ray(still, {5, 700})->direction.unit - ray(moving, {5, 700})->direction.unit).norm(), 1e-12);
+  EXPECT_FALSE(project(moving, {{0, 0, -60}}));  // behind
+}
+
 TEST(Sun, ShinesFromItsAzimuthAndElevation) {
   EXPECT_LT((sun_direction({Degrees{90}, Degrees{0}}).unit - Eigen::Vector3d(1, 0, 0)).norm(), 1e-15);
   EXPECT_LT(

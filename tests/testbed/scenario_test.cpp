@@ -183,6 +183,30 @@ TEST(SceneFiles, TheTruthOfAnImageLiesWhereTheCameraSeesIt) {
               StartsWith("image,type,x,y,diameter,major,minor,angle,landmark\ndescent_0001.png,crater,"));
 }
 
+TEST(SceneFiles, TheTruthOfARollingShutterMovesWithTheRows) {
+  Scenario scenario = small_scenario();
+  std::vector<Shot> shots = plan_shots(scenario);
+  scenario.ground = size_site(scenario, shots);
+  const Scene scene = make_scene(scenario.ground, 1);
+  Shot& shot = shots.front();
+  constexpr double kReadout = 0.2;
+  const Eigen::Matrix3d axes = shot.view.grid_from_camera.transform.linear();
+  shot.motion.velocity = 10 * axes.col(0);  // to the right
+  const View still = camera_view(shot.view), moving = camera_view(true_camera(shot, kReadout));
+  EXPECT_FALSE(true_camera(shot, 0).motion);
+  int compared = 0;
+  for (const TrueCrater& crater : scene.craters) {
+    const auto at = image_outline(still, crater), seen = image_outline(moving, crater);
+    if (!at || !seen) continue;
+    ++compared;
+    const double range = axes.col(2).dot(crater.position - shot.view.centre().xyz);
+    const double passed = 10 * kReadout * (at->y / double(shot.view.camera.rows - 1) - 0.5);
+    EXPECT_NEAR(seen->x - at->x, -shot.view.camera.fx * passed / range, 0.1);
+    EXPECT_NEAR(seen->y, at->y, 0.1);
+  }
+  EXPECT_GT(compared, 3);
+}
+
 TEST(SceneFiles, TheDemIsTheGroundWithItsError) {
   Scenario scenario = small_scenario();
   scenario.dem = {.cell = 2, .height_sd = 0.3, .correlation = 6};

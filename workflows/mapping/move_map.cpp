@@ -115,6 +115,12 @@ class MapMover {
       std::tie(rows[0][k], rows[1][k]) =
           std::pair(c * rows[0][k] - s * rows[1][k], s * rows[0][k] + c * rows[1][k]);
     json["grid_from_camera"] = rows;
+    if (json.contains("motion")) {
+      auto shift = json["motion"].at("shift").get<std::vector<double>>();
+      if (shift.size() != 3) return "{}";
+      std::tie(shift[0], shift[1]) = std::pair(c * shift[0] - s * shift[1], s * shift[0] + c * shift[1]);
+      json["motion"]["shift"] = shift;
+    }
     return json.dump();
   }
 

@@ -70,6 +70,7 @@ SceneViews views_of(const pipeline::Reconstruction& scene, const Photos& photos)
     info.view.emplace();
     info.view->camera = camera;
     info.view->grid_from_camera.transform = *image.world_from_camera;
+    info.view->motion = image.motion;
     info.saturated = photos.photos[i].saturated;
     infos.push_back(std::move(info));
     out.images.push_back(i);

@@ -24,6 +24,7 @@ exporters::CameraFileContent camera_content(const PosedPhotos& posed, const Phot
                               .lens = image.lens,
                               .world_from_camera = image.world_from_camera,
                               .covariance = image.covariance,
+                              .motion = image.motion,
                               .taken_utc = photos.photos[i].taken_utc});
   }
   return content;

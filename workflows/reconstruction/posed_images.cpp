@@ -76,6 +76,7 @@ std::string camera_file(const PosedImages& posed) {
     image.lens = static_cast<std::size_t>(lens);
     image.world_from_camera = info.view->grid_from_camera.transform;
     if (!info.view->covariance.isZero()) image.covariance = info.view->covariance;
+    image.motion = info.view->motion;
     image.sun = info.sun;
     image.taken_utc = info.taken_utc;
   }

@@ -17,6 +17,7 @@ std::string key_of_view(const pipeline::SurfaceView& view) {
   io(camera.columns, camera.rows, camera.fx, camera.fy, camera.cx, camera.cy, camera.skew, camera.lens,
      camera.distortion);
   io.matrix(view.view.grid_from_camera.transform.matrix());
+  io.maybe(view.view.motion, [&](const ShutterMotion& m) { io.matrix(m.shift), io.matrix(m.turn); });
   io.maybe(view.sun, [&](const Sun& sun) { io(sun.azimuth.value, sun.elevation.value); });
   return key.take();
 }
@@ -50,7 +51,7 @@ void keep_chunks(pipeline::SweepPlan& plan, const std::vector<pipeline::SurfaceV
   plan.keep = [&kept, depends_on = key.hex()](const std::string& item,
                                               const std::function<pipeline::ChunkHeights()>& compute) {
     return kept.get<pipeline::ChunkHeights>(
-        {.name = "sweep_heights", .item = item, .version = 2, .depends_on = depends_on}, compute);
+        {.name = "sweep_heights", .item = item, .version = 3, .depends_on = depends_on}, compute);
   };
 }
 

@@ -88,6 +88,16 @@ std::optional<Eigen::Matrix<double, 6, 6>> covariance_of(const JsonValue& image)
   return made;
 }
 
+ShutterMotion motion_of(const JsonValue& motion) {
+  motion.expect_only({"shift", "turn"});
+  const ShutterMotion made{.shift = motion["shift"].vector3(), .turn = motion["turn"].vector3()};
+  if (!(made.turn.norm() < 1))
+    motion["turn"].refuse(
+        fmt::format("a camera that turns by {:.3g} rad while one image is read out", made.turn.norm()),
+        "radians, less than 1");
+  return made;
+}
+
 class CameraJsonReader {
  public:
   explicit CameraJsonReader(const JsonValue& root) : root_(root) {
@@ -102,7 +112,7 @@ class CameraJsonReader {
 
   CameraRecord record(const JsonValue& image) const {
     image.expect_only({"name", "camera", "centre", "rotation", "quaternion", "rotation_sd", "position_sd",
-                       "covariance", "sun", "sun_direction", "image_sun_angle", "taken_utc"});
+                       "covariance", "motion", "sun", "sun_direction", "image_sun_angle", "taken_utc"});
     CameraRecord record{.image = image["name"].text(), .location = "at " + image.location()};
     const LensRecord lens = lens_of(image["camera"]);
     record.camera = lens.camera;
@@ -113,6 +123,7 @@ class CameraJsonReader {
       record.world_from_camera->translation() = image["centre"].vector3();
     }
     record.covariance = covariance_of(image);
+    if (image.has("motion")) record.motion = motion_of(image["motion"]);
     record.sun = sun_;
     if (image.has("sun")) record.sun = sun_of(image["sun"]);
     if (image.has("sun_direction")) {

@@ -14,7 +14,7 @@ nlohmann::json as_json(const PosedCamera& view) {
     rotation.push_back({row.x(), row.y(), row.z()});
   }
   const Eigen::Vector3d at = view.centre().xyz;
-  return {{"model", c.lens == Camera::Lens::fisheye ? "fisheye" : "brown"},
+  nlohmann::json json{{"model", c.lens == Camera::Lens::fisheye ? "fisheye" : "brown"},
           {"columns", c.columns},
           {"rows", c.rows},
           {"focal", {c.fx, c.fy}},
@@ -23,6 +23,10 @@ nlohmann::json as_json(const PosedCamera& view) {
           {"distortion", c.distortion},
           {"centre", {at.x(), at.y(), at.z()}},
           {"grid_from_camera", rotation}};
+  if (const auto& m = view.motion)
+    json["motion"] = {{"shift", {m->shift.x(), m->shift.y(), m->shift.z()}},
+                      {"turn", {m->turn.x(), m->turn.y(), m->turn.z()}}};
+  return json;
 }
 
 nlohmann::json as_json(const OrthoGrid& ortho) {

@@ -32,6 +32,11 @@ void layout(auto& io, auto& view) requires requires {
   layout(io, view.covariance);
 }
 
+void layout(auto& io, auto& motion) requires requires {
+  motion.turn;
+}
+{ layout(io, motion.shift), layout(io, motion.turn); }
+
 void layout(auto& io, auto& ortho) requires requires {
   ortho.step_x;
 }
@@ -65,6 +70,7 @@ void read_optional(ByteReader& in, std::optional<T>& value) {
 void write(ByteWriter& out, const ImageView& image) {
   out(image.name), out(image.columns), out(image.rows);
   write_optional(out, image.view), write_optional(out, image.ortho), write_optional(out, image.sun);
+  if (image.view) write_optional(out, image.view->motion);
   out(image.taken_utc);
   out(static_cast<std::uint64_t>(image.footprint.size()));
   for (const auto& ring : image.footprint) {
@@ -80,6 +86,7 @@ ImageView read_image(ByteReader& in) {
   ImageView image;
   in(image.name), in(image.columns), in(image.rows);
   read_optional(in, image.view), read_optional(in, image.ortho), read_optional(in, image.sun);
+  if (image.view) read_optional(in, image.view->motion);
   in(image.taken_utc);
   image.footprint.resize(in.length(8));
   for (auto& ring : image.footprint) {

@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 
-#include "core/solve.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -132,18 +131,6 @@ ExpectedMotion expect(const Reconstruction& scene, const Sequence& images, std::
 }
 
 }  // namespace
-
-double readout_fraction(const Camera& camera, double row) {
-  return camera.rows > 1 ? row / static_cast<double>(camera.rows - 1) - 0.5 : 0;
-}
-
-Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& world_from_camera, const ShutterMotion& motion,
-                             double fraction) {
-  Eigen::Isometry3d pose = world_from_camera;
-  pose.linear() = world_from_camera.linear() * rotation_by(fraction * motion.turn);
-  pose.translation() += fraction * motion.shift;
-  return pose;
-}
 
 Eigen::Isometry3d pose_of_mark(const Reconstruction& scene, const Mark& mark) {
   const AdjustedImage& image = scene.images.at(mark.image);

@@ -9,13 +9,6 @@
 #include "pipeline/reconstruction/reconstruction.hpp"
 namespace waymark::pipeline {
 
-/// Returns when a row is read out, as a fraction of the readout time after the middle row: [-0.5, 0.5].
-double readout_fraction(const Camera& camera, double row);
-
-/// Returns the pose of a camera after a fraction of its motion.
-Eigen::Isometry3d moved_pose(const Eigen::Isometry3d& world_from_camera, const ShutterMotion& motion,
-                             double fraction);
-
 /// Returns the pose of the image of a mark when its row was read out; the image has a pose. The row is that
 /// of the mark, not that of its prediction: residuals of a pixel differ by the motion during a row.
 Eigen::Isometry3d pose_of_mark(const Reconstruction& scene, const Mark& mark);

@@ -69,6 +69,20 @@ TEST(CameraFile, QuaternionAndRotationAreTheSame) {
   EXPECT_LT(turn_between(*read(file).images[0].view, *read(sample()).images[0].view), 1e-9);
 }
 
+TEST(CameraFile, AMotionTurnsAndGrowsWithTheFrame) {
+  json file = sample();
+  file["images"][0]["motion"] = {{"shift", {1, 2, 3}}, {"turn", {0.01, 0, -0.02}}};
+  const PosedCamera view = *read(file).images[0].view;
+  ASSERT_TRUE(view.motion);
+  EXPECT_EQ(view.motion->shift, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(view.motion->turn, Eigen::Vector3d(0.01, 0, -0.02));
+  file["frame"] = {{"axes", "arbitrary"}};
+  const Similarity turn = similarity_from_text("2,0.7071067811865476,0,0,0.7071067811865476,100,200,300");
+  const PosedCamera moved = *read(file, {.crs = "EPSG:32651", .map_from_frame = turn}).images[0].view;
+  EXPECT_LT((moved.motion->shift - Eigen::Vector3d(-4, 2, 6)).norm(), 1e-9);  // x, y -> -y, x
+  EXPECT_EQ(moved.motion->turn, view.motion->turn);
+}
+
 TEST(CameraFile, EveryMissingFieldIsNamedWithItsPlace) {
   for (const char* field : {"columns", "rows", "fx", "fy", "cx", "cy"})
     EXPECT_THAT(
@@ -91,6 +105,12 @@ TEST(CameraFile, SaysWhatIsWrongWithAValue) {
   EXPECT_THAT(refusal([](json& f) { f["images"][0]["rotation"][2][2] = 1; }), HasSubstr("reflection"));
   EXPECT_THAT(refusal([](json& f) { f["images"][0]["rotation"][0][0] = 2; }), HasSubstr("no rotation"));
   EXPECT_THAT(refusal([](json& f) { f["images"][0]["camera"] = "ascent"; }), HasSubstr("no camera 'ascent'"));
+  EXPECT_THAT(refusal([](json& f) {
+                f["images"][0]["motion"] = {{"shift", {0, 0, 0}}, {"turn", {0, 12, 0}}};  // degrees
+              }),
+              AllOf(HasSubstr("turns by 12 rad"), HasSubstr("/images/0/motion/turn")));
+  EXPECT_THAT(refusal([](json& f) { f["images"][0]["motion"] = {{"shift", {0, 0, 0}}}; }),
+              HasSubstr("'turn' is missing"));
   EXPECT_THAT(refusal([](json& f) { f["images"][0]["taken_utc"] = "2021-02-18T20:51:06"; }),
               HasSubstr("with Z or an offset"));
   EXPECT_THAT(refusal([](json& f) { f["sun"]["elevation"] = -3; }),

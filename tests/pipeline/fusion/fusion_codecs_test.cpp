@@ -50,6 +50,7 @@ TEST(FusionCodecs, ImageViews) {
   image.view->camera.fx = 900;
   image.view->camera.lens = Camera::Lens::fisheye;
   image.view->grid_from_camera.transform.translation() = Eigen::Vector3d(1, 2, 3);
+  image.view->motion = ShutterMotion{.shift = {0.5, 0, -1}, .turn = {0, 0.01, 0.02}};
   image.dem_constraint.emplace();
   image.dem_constraint->information(5, 1) = 2;
   image.dem_constraint->information_vector(4) = 3;
@@ -68,6 +69,7 @@ TEST(FusionCodecs, ImageViews) {
   const ImageView back = Codec<ImageView>::decode(Codec<ImageView>::encode(image));
   EXPECT_EQ(back.view->camera, image.view->camera);
   EXPECT_EQ(back.view->covariance, image.view->covariance);
+  EXPECT_EQ(back.view->motion, image.view->motion);
   EXPECT_EQ(back.sun, image.sun);
   ASSERT_TRUE(back.dem_shift);
   EXPECT_EQ(back.dem_shift->metres, image.dem_shift->metres);

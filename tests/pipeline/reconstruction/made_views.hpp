@@ -56,14 +56,23 @@ inline testbed::Scene made_site(std::uint64_t seed) {
   return testbed::make_scene(ground, seed);
 }
 
-/// Views from 60 m: a cross of five, 14 m apart. GSD 0.43 m, angles up to 25 degrees.
-inline std::vector<pipeline::SurfaceView> made_flight(const testbed::Scene& scene) {
-  const testbed::Exposure exposure;
+/// Views from 60 m: a cross of five, 14 m apart. GSD 0.43 m, angles up to 25 degrees. With a readout time the
+/// cameras move and turn by up to 4 px meanwhile, each in its own direction.
+inline std::vector<pipeline::SurfaceView> made_flight(const testbed::Scene& scene, double readout_time = 0) {
+  testbed::Exposure exposure;
+  exposure.readout_time = readout_time;
   const testbed::LitTerrain lit(scene, exposure.sun);
   std::vector<pipeline::SurfaceView> views;
   for (const auto& [x, y] : {std::pair{0.0, 0.0}, {-14.0, 0.0}, {14.0, 0.0}, {0.0, -14.0}, {0.0, 14.0}}) {
-    const PosedCamera camera = camera_above(x, y, 60);
-    Pixels image = testbed::render_view(scene, lit, testbed::camera_view(camera), exposure, views.size());
+    PosedCamera camera = camera_above(x, y, 60);
+    const double phase = double(views.size());
+    const testbed::CameraMotion motion{
+        .velocity = 15 * Eigen::Vector3d(std::cos(2 * phase), std::sin(2 * phase), 0.2),
+        .spin = 0.2 * Eigen::Vector3d(std::sin(3 * phase), std::cos(3 * phase), 1)};
+    Pixels image = testbed::render_view(scene, lit, testbed::camera_view(camera, motion), exposure, views.size());
+    if (readout_time > 0)
+      camera.motion = {.shift = readout_time * motion.velocity,
+                       .turn = readout_time * camera.grid_from_camera.transform.linear().transpose() * motion.spin};
     for (float& value : image.cells()) value *= 255;
     views.push_back(made_view("view_" + std::to_string(views.size()), camera, std::move(image)));
   }

@@ -19,7 +19,7 @@ struct MovingSceneOptions {
 /// Projects a point by a camera that moves while it reads out its rows, by fixed-point iteration on the row.
 inline std::optional<Eigen::Vector2d> project_while_moving(const Camera& camera,
                                                            const Eigen::Isometry3d& pose,
-                                                           const pipeline::ShutterMotion& motion,
+                                                           const ShutterMotion& motion,
                                                            const Eigen::Vector3d& point) {
   double row = static_cast<double>(camera.rows - 1) / 2;
   for (int step = 0; step < 50; ++step) {
@@ -46,7 +46,7 @@ class MovingFlight {
     return pose;
   }
   /// Motion in a time around t, by differences over a millisecond.
-  static pipeline::ShutterMotion motion(double t, double during) {
+  static ShutterMotion motion(double t, double during) {
     const Eigen::Isometry3d before = pose(t - 5e-4), after = pose(t + 5e-4);
     const Eigen::AngleAxisd turn(Eigen::Matrix3d(before.linear().transpose() * after.linear()));
     return {(after.translation() - before.translation()) * 1e3 * during,
@@ -63,7 +63,7 @@ inline MadeScene moving_scene(const MovingSceneOptions& o) {
   truth.lenses.push_back({.camera = MadeSceneOptions{}.camera, .readout_time = o.readout_time});
   for (int i = 0; i < o.images; ++i) {
     const double t = o.interval * i;
-    pipeline::ShutterMotion motion = MovingFlight::motion(t, o.readout_time);
+    ShutterMotion motion = MovingFlight::motion(t, o.readout_time);
     motion.turn += normal_vector(random, o.wobble * o.readout_time);
     truth.images.push_back({.name = fmt::format("image_{:03}", i),
                             .world_from_camera = MovingFlight::pose(t),

@@ -167,6 +167,21 @@ TEST_F(SweepHeights, ErrorsOfPosesShowInTheirBandAlone) {
   EXPECT_LT(sum / count, 0.5);
 }
 
+// The testbed renders each row from its own pose by velocity and spin.
+TEST_F(SweepHeights, OfARollingShutterAreThoseOfAGlobalOne) {
+  const std::vector<SurfaceView> moving = made_flight(*scene_, 0.1);
+  std::vector<SurfaceView> held = moving;
+  for (SurfaceView& view : held) view.view.motion.reset();
+  const HeightErrors with = errors_of(sweep_heights(moving, plan_of(moving)), scene_->terrain),
+                     without = errors_of(sweep_heights(held, plan_of(held)), scene_->terrain),
+                     still = errors_of(*dem_, scene_->terrain);
+  std::printf("NMAD %.2f px, RMSE %.2f px; without the motion %.2f, %.2f px; global shutter %.2f, %.2f px\n",
+              with.nmad, with.rmse, without.nmad, without.rmse, still.nmad, still.rmse);
+  EXPECT_LT(with.nmad, 1.2 * still.nmad);
+  EXPECT_LT(with.rmse, 1.3 * still.rmse);
+  EXPECT_GT(without.nmad, 2 * with.nmad);
+}
+
 TEST_F(SweepHeights, BlackImagesHaveNoHeights) {
   std::vector<SurfaceView> views;
   for (const SurfaceView& view : *views_)
