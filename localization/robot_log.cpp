@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "geo/point_at_height.hpp"
+
 namespace waymark::localization {
 namespace {
 
@@ -144,7 +146,7 @@ void clean_log(RobotLog& log, double max_gap) {
 
 void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
   const auto placed = [&](double x, double y) -> Eigen::Vector2d {
-    return frame.map_frame_from_crs({{x, y, frame.origin().xyz.z()}}).xyz.head<2>();
+    return plan_position(frame, x, y);
   };
   if (!log.fix_crs.empty()) {
     place_fixes(log, frame.crs(), placed);

@@ -59,7 +59,7 @@ std::string camera_file(const Scenario& scenario, const std::vector<Shot>& shots
       image["rotation_sd"] = scenario.pose_errors.attitude_sd.value;
       image["position_sd"] = scenario.pose_errors.position_sd;
     }
-    if (const auto m = true_camera(shot, readout_time).motion; m && exact)
+    if (const auto m = true_camera(shot, readout_time).motion)  // what gyroscopes say is exact enough
       image["motion"] = {{"shift", {m->shift.x(), m->shift.y(), m->shift.z()}},
                          {"turn", {m->turn.x(), m->turn.y(), m->turn.z()}}};
     if (readout_time > 0 && shot.time) image["taken_utc"] = time_of_landing(*shot.time);

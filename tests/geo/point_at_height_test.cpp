@@ -33,6 +33,17 @@ TEST(PointAtHeight, IsTheInverseOfTheMapFrameOnMountains) {
   EXPECT_GT(aside_of_plane, 30);
 }
 
+TEST(PlanPosition, IsThatOfTheGroundOfTheOrigin) {
+  const LocalFrame low(Crs::from_text("IAU_2015:49900"), {{77.4, 18.4, 0}}),
+      high(Crs::from_text("IAU_2015:49900"), {{77.4, 18.4, -2500}});
+  const Point<MapCrs> there{{77.45, 18.45, -2500}};  // 4 km away, on the floor of Jezero
+  const Eigen::Vector2d truth = high.map_frame_from_crs(there).xyz.head<2>();
+  EXPECT_LT((plan_position(high, 77.45, 18.45) - truth).norm(), 1e-9);
+  EXPECT_GT((plan_position(low, 77.45, 18.45) - truth).norm(), 2.5);
+  EXPECT_LT((low.map_frame_from_crs(there).xyz.head<2>() - truth).norm(), 1e-6);
+  EXPECT_LT((point_of_pose(high, {truth.x(), truth.y(), 0}).xyz - there.xyz).head<2>().norm() * 6e4, 0.01);
+}
+
 TEST(PointAtHeight, IsATranslationInALocalCrs) {
   const LocalFrame frame(Crs::local(), {{100, 200, 0}});
   EXPECT_EQ(point_at_height(frame, {3, 4}, 7).xyz, Eigen::Vector3d(103, 204, 7));

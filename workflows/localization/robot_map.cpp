@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -25,9 +26,14 @@ Point<MapCrs> frame_origin(const geodb::MapStore& store) {
   if (store.crs().kind() == CrsKind::local) return {};
   const std::vector<Landmark> some = store.query({.limit = 1000});
   Point<MapCrs> origin;
-  for (const Landmark& l : some) origin.xyz += l.position.xyz / static_cast<double>(some.size());
+  double heights = 0, known = 0;
+  for (const Landmark& l : some) {
+    origin.xyz += l.position.xyz / static_cast<double>(some.size());
+    if (std::isfinite(l.position.xyz.z())) heights += l.position.xyz.z(), ++known;
+  }
   if (!some.empty() && store.crs().kind() == CrsKind::geographic) origin = some[0].position;
-  origin.xyz.z() = 0;
+  // Whole metres: poses without a height count as on this plane.
+  origin.xyz.z() = known > 0 ? std::round(heights / known) : 0;
   return origin;
 }
 

@@ -12,6 +12,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "geo/point_at_height.hpp"
 #include "importers/tables/area_of_interest.hpp"
 #include "planning/observability.hpp"
 #include "workflows/localization/robot_map.hpp"
@@ -83,9 +84,9 @@ std::vector<Grid<float>> compute_tile(const Window& window, const GridGeometry& 
       const double x = grid.where.x(static_cast<double>(window.column + c)),
                    y = grid.where.y(static_cast<double>(window.row + r));
       if (area && !area->contains(x, y)) continue;
-      const Point<MapFrame> at = map.frame.map_frame_from_crs({{x, y, 0}});
+      const Eigen::Vector2d at = plan_position(map.frame, x, y);
       const auto values =
-          observability_bands(planning::observability_at(at.xyz.x(), at.xyz.y(), landmarks, rules));
+          observability_bands(planning::observability_at(at.x(), at.y(), landmarks, rules));
       for (std::size_t b = 0; b < bands; ++b) out[b](c, r) = static_cast<float>(values[b]);
     }
   return out;

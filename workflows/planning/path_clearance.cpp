@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "geo/point_at_height.hpp"
 #include "importers/rasters/dem.hpp"
 #include "planning/clearance.hpp"
 
@@ -71,8 +72,7 @@ std::string add_clearance(const RouteRequest& request, const RobotMap& map, Rout
   std::size_t unknown = 0;
   for (PlannedRoute& route : result.routes)
     for (RouteStation& station : route.stations) {
-      const Eigen::Vector2d at =
-          map.frame.map_frame_from_crs({{station.at.x(), station.at.y(), 0}}).xyz.head<2>();
+      const Eigen::Vector2d at = plan_position(map.frame, station.at.x(), station.at.y());
       station.clearance = planning::clearance_bounds(
           {at.x(), at.y(), station.yaw}, vehicle,
           [&](const Eigen::Vector2d& middle, double half) { return terrain(middle, half); },

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "geo/point_at_height.hpp"
 #include "importers/tables/table.hpp"
 #include "importers/tables/text_table.hpp"
 
@@ -40,7 +41,7 @@ std::vector<RoutePoint> read_route(const std::string& file, const RobotMap& map)
     if (route >= 0 && number(route) != 1) continue;
     if (!std::isfinite(number(x)) || !std::isfinite(number(y)))
       throw Error(ErrorCode::input, "a station of the route has no position", table->row_location(row), hint);
-    RoutePoint point{map.frame.map_frame_from_crs({{number(x), number(y), 0}}).xyz.head<2>(), number(sd)};
+    RoutePoint point{plan_position(map.frame, number(x), number(y)), number(sd)};
     if (!std::isfinite(point.sd)) point.sd = 0;
     if (!points.empty() && !((point.at - points.back().at).norm() < 50e3))
       throw Error(ErrorCode::input,

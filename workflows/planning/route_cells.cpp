@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "geo/point_at_height.hpp"
 #include "importers/tables/area_of_interest.hpp"
 #include "workflows/parse_number.hpp"
 
@@ -30,7 +31,7 @@ Waypoint parse_waypoint(const std::string& name, const std::string& text, const 
     throw Error(ErrorCode::usage, fmt::format("{} {} is no position", name, text), "",
                 "X,Y or X,Y,YAW in degrees");
   Waypoint point;
-  point.at = map.frame.map_frame_from_crs({{numbers[0], numbers[1], 0}}).xyz.head<2>();
+  point.at = plan_position(map.frame, numbers[0], numbers[1]);
   if (!(point.at.norm() < kMaxExtent))
     throw Error(
         ErrorCode::input,

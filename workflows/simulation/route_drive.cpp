@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "geo/point_at_height.hpp"
 #include "planning/odometry_belief.hpp"
 #include "testbed/drive/drive_readings.hpp"
 #include "testbed/drive/odometry_errors.hpp"
@@ -143,12 +144,12 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
     const std::string lines = testbed::odometry_lines(world, place, done);
     drive.log += lines;
     live.take(lines);
-    const Point<MapFrame> at = map.frame.map_frame_from_crs(
-        {{now.at.plane.x / place.metres_per_unit, now.at.plane.y / place.metres_per_unit, 0}});
-    if (hazards && hazards->at(at.xyz.x(), at.xyz.y()) >= planning::HazardClass::hazard)
+    const Eigen::Vector2d at = plan_position(map.frame, now.at.plane.x / place.metres_per_unit,
+                                             now.at.plane.y / place.metres_per_unit);
+    if (hazards && hazards->at(at.x(), at.y()) >= planning::HazardClass::hazard)
       keep_out += now.distance - distance;
     distance = now.distance;
-    report.goal_distance = (at.xyz.head<2>() - stations.back().at).norm();
+    report.goal_distance = (at - stations.back().at).norm();
   }
   if (hazards) report.keep_out = keep_out;
   report.seconds = steps.back().t, report.driven = steps.back().distance;

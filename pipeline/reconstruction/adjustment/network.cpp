@@ -3,6 +3,11 @@
 
 namespace waymark::pipeline {
 
+std::size_t Network::add_block(Block::Kind kind, Eigen::VectorXd value, std::vector<int> free) {
+  blocks.push_back({kind, std::move(value), std::move(free)});
+  return blocks.size() - 1;
+}
+
 bool Network::linearize(const Term& term, Term::Linear& out) const {
   std::array<const double*, Term::kMaxBlocks> values{};
   for (std::size_t i = 0; i < term.blocks.size(); ++i) values[i] = blocks[term.blocks[i]].value.data();

@@ -71,6 +71,8 @@ struct Network {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< subtracted from all positions
   Eigen::Index camera_columns = 0, point_columns = 0;
 
+  /// Adds a block and returns its index.
+  std::size_t add_block(Block::Kind kind, Eigen::VectorXd value, std::vector<int> free);
   /// Returns the residual of a term with its derivatives; false where it has none.
   bool linearize(const Term& term, Term::Linear& out) const;
   /// Numbers the free components.

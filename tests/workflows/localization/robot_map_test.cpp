@@ -7,6 +7,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/locked_folder.hpp"
+#include "geo/point_at_height.hpp"
 #include "geodb/write_map.hpp"
 #include "workflows/mapping/import_landmarks.hpp"
 #include "workflows/registries.hpp"
@@ -28,6 +29,22 @@ class ImportedMap : public ::testing::Test {
 
   LockedFolder folder_{std::filesystem::temp_directory_path()};
 };
+
+TEST_F(ImportedMap, ItsFrameLiesOnTheGroundOfTheLandmarks) {
+  write_file(file("alps.csv"),
+             "type,x,y,z\nrock,400000,5130000,2390\nrock,404000,5130000,2410\nrock,400000,5133000,2400\n");
+  ImportRequest import{.table = file("alps.csv"), .map = file("alps.gpkg")};
+  import.options.table_crs = "EPSG:32632";
+  import_landmarks(import);
+  const RobotMap map = open_robot_map(file("alps.gpkg"), nullptr).map;
+  EXPECT_EQ(map.frame.origin().xyz.z(), 2400);
+  for (const localization::MapLandmark& rock : all_landmarks(map, nullptr)) {
+    const Eigen::Vector3d there = map.frame.crs_from_map_frame({{rock.at.x(), rock.at.y(), 0}}).xyz;
+    EXPECT_LT((plan_position(map.frame, there.x(), there.y()) - rock.at).norm(), 0.01);
+    EXPECT_NEAR(there.z(), 2400, 2);
+  }
+  EXPECT_EQ(of_table("type,x,y,z\nrock,0,0,50\nrock,9,0,70\n").frame.origin().xyz.z(), 0);  // a local CRS
+}
 
 class SurveyAccuracy : public ImportedMap {
  protected:
