@@ -56,7 +56,7 @@ struct PosedCamera {
   /// While the rows were read out; none: the shutter is global, or the motion is unknown.
   std::optional<ShutterMotion> motion = {};
 
-  /// Of the middle row.
+  /// Returns the projection centre of the middle row.
   Point<GridFrame> centre() const { return {grid_from_camera.transform.translation()}; }
 };
 

@@ -145,9 +145,7 @@ void clean_log(RobotLog& log, double max_gap) {
 }
 
 void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
-  const auto placed = [&](double x, double y) -> Eigen::Vector2d {
-    return plan_position(frame, x, y);
-  };
+  const auto placed = [&](double x, double y) -> Eigen::Vector2d { return plan_position(frame, x, y); };
   if (!log.fix_crs.empty()) {
     place_fixes(log, frame.crs(), placed);
     log.fix_crs.clear();

@@ -40,7 +40,8 @@ Appearances list_appearances(const Thing& thing, const char* type, std::size_t i
 
 TruthTables truth_tables(const Scenario& scenario, const Scene& scene, const std::vector<Shot>& shots) {
   std::vector<View> views;
-  for (const Shot& shot : shots) views.push_back(camera_view(true_camera(shot, scenario.exposure.readout_time)));
+  for (const Shot& shot : shots)
+    views.push_back(camera_view(true_camera(shot, scenario.exposure.readout_time)));
   TruthTables tables;
   tables.detections = "image,type,x,y,diameter,major,minor,angle,landmark\n";
   tables.landmarks = tables.ignored =

@@ -45,13 +45,13 @@ void read(const Json& json, Eigen::MatrixBase<Matrix>& into) {
 Json json_of(const PosedCamera& view) {
   const Camera& c = view.camera;
   Json json{{"size", {c.columns, c.rows}},
-          {"focal", {c.fx, c.fy}},
-          {"centre", {c.cx, c.cy}},
-          {"skew", c.skew},
-          {"fisheye", c.lens == Camera::Lens::fisheye},
-          {"distortion", c.distortion},
-          {"pose", json_of(view.grid_from_camera.transform.affine())},
-          {"covariance", json_of(view.covariance)}};
+            {"focal", {c.fx, c.fy}},
+            {"centre", {c.cx, c.cy}},
+            {"skew", c.skew},
+            {"fisheye", c.lens == Camera::Lens::fisheye},
+            {"distortion", c.distortion},
+            {"pose", json_of(view.grid_from_camera.transform.affine())},
+            {"covariance", json_of(view.covariance)}};
   if (const auto& m = view.motion)
     json["motion"] = {{"shift", json_of(m->shift)}, {"turn", json_of(m->turn)}};
   return json;

@@ -34,7 +34,7 @@ struct AdjustedLens {
 /// Image with its pose, if it has one.
 struct AdjustedImage {
   std::string name = {};
-  std::size_t lens = 0;                                     ///< index into `Reconstruction::lenses`
+  std::size_t lens = 0;  ///< index into `Reconstruction::lenses`
   /// Of the middle row. OpenCV axes: x right, y down, z forward.
   std::optional<Eigen::Isometry3d> world_from_camera = {};
   /// Of the rotation (radians, about the axes of the camera), then of the centre, as in PosedCamera.

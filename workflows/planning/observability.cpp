@@ -85,8 +85,7 @@ std::vector<Grid<float>> compute_tile(const Window& window, const GridGeometry& 
                    y = grid.where.y(static_cast<double>(window.row + r));
       if (area && !area->contains(x, y)) continue;
       const Eigen::Vector2d at = plan_position(map.frame, x, y);
-      const auto values =
-          observability_bands(planning::observability_at(at.x(), at.y(), landmarks, rules));
+      const auto values = observability_bands(planning::observability_at(at.x(), at.y(), landmarks, rules));
       for (std::size_t b = 0; b < bands; ++b) out[b](c, r) = static_cast<float>(values[b]);
     }
   return out;

@@ -15,14 +15,14 @@ nlohmann::json as_json(const PosedCamera& view) {
   }
   const Eigen::Vector3d at = view.centre().xyz;
   nlohmann::json json{{"model", c.lens == Camera::Lens::fisheye ? "fisheye" : "brown"},
-          {"columns", c.columns},
-          {"rows", c.rows},
-          {"focal", {c.fx, c.fy}},
-          {"principal_point", {c.cx, c.cy}},
-          {"skew", c.skew},
-          {"distortion", c.distortion},
-          {"centre", {at.x(), at.y(), at.z()}},
-          {"grid_from_camera", rotation}};
+                      {"columns", c.columns},
+                      {"rows", c.rows},
+                      {"focal", {c.fx, c.fy}},
+                      {"principal_point", {c.cx, c.cy}},
+                      {"skew", c.skew},
+                      {"distortion", c.distortion},
+                      {"centre", {at.x(), at.y(), at.z()}},
+                      {"grid_from_camera", rotation}};
   if (const auto& m = view.motion)
     json["motion"] = {{"shift", {m->shift.x(), m->shift.y(), m->shift.z()}},
                       {"turn", {m->turn.x(), m->turn.y(), m->turn.z()}}};

@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 
-
 namespace waymark::pipeline {
 namespace {
 

@@ -109,7 +109,9 @@ TEST(CameraFile, SaysWhatIsWrongWithAValue) {
                 f["images"][0]["motion"] = {{"shift", {0, 0, 0}}, {"turn", {0, 12, 0}}};  // degrees
               }),
               AllOf(HasSubstr("turns by 12 rad"), HasSubstr("/images/0/motion/turn")));
-  EXPECT_THAT(refusal([](json& f) { f["images"][0]["motion"] = {{"shift", {0, 0, 0}}}; }),
+  EXPECT_THAT(refusal([](json& f) {
+                f["images"][0]["motion"] = {{"shift", {0, 0, 0}}};
+              }),
               HasSubstr("'turn' is missing"));
   EXPECT_THAT(refusal([](json& f) { f["images"][0]["taken_utc"] = "2021-02-18T20:51:06"; }),
               HasSubstr("with Z or an offset"));

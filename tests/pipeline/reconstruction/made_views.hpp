@@ -69,10 +69,12 @@ inline std::vector<pipeline::SurfaceView> made_flight(const testbed::Scene& scen
     const testbed::CameraMotion motion{
         .velocity = 15 * Eigen::Vector3d(std::cos(2 * phase), std::sin(2 * phase), 0.2),
         .spin = 0.2 * Eigen::Vector3d(std::sin(3 * phase), std::cos(3 * phase), 1)};
-    Pixels image = testbed::render_view(scene, lit, testbed::camera_view(camera, motion), exposure, views.size());
+    Pixels image =
+        testbed::render_view(scene, lit, testbed::camera_view(camera, motion), exposure, views.size());
     if (readout_time > 0)
-      camera.motion = {.shift = readout_time * motion.velocity,
-                       .turn = readout_time * camera.grid_from_camera.transform.linear().transpose() * motion.spin};
+      camera.motion = {
+          .shift = readout_time * motion.velocity,
+          .turn = readout_time * camera.grid_from_camera.transform.linear().transpose() * motion.spin};
     for (float& value : image.cells()) value *= 255;
     views.push_back(made_view("view_" + std::to_string(views.size()), camera, std::move(image)));
   }
