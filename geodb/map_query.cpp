@@ -49,14 +49,18 @@ bool visit_largest(const MapStore::Connection& map, const LandmarkTable& table, 
                    const LandmarkSearch& search, BestLandmarks& best) {
   if (query.sensor != nullptr && query.largest_first == "quality")
     return false;  // the sensor's is not stored
-  const LargestConditions largest =
-      largest_conditions(map.database, table.layout.type().name, query.largest_first);
-  if (largest.indexed.empty()) return false;
   std::size_t found = 0;
   const auto visit = [&](const std::string& rest) {
     sqlite::Statement row = map.database.prepare(table.layout.select(rest));
     while (found < best.limit() && row.step()) found += search.examine(row, best);
   };
+  if (!number_column(table.layout, query.largest_first)) {  // of equal rank all
+    visit("ORDER BY t.id");
+    return true;
+  }
+  const LargestConditions largest =
+      largest_conditions(map.database, table.layout.type().name, query.largest_first);
+  if (largest.indexed.empty()) return false;
   visit("WHERE t." + largest.indexed + " ORDER BY t." + quote_identifier(query.largest_first) +
         " DESC, t.id");
   if (!largest.following.empty()) visit("WHERE t." + largest.following + " ORDER BY t.id");

@@ -155,6 +155,40 @@ TEST(MapQuery, LargestFirstGivesTheLargest) {
   EXPECT_TRUE(twin.map->query({.limit = 0}).empty());
 }
 
+// Landmarks of a type without the feature rank last, in the order of the map; their table is not read whole.
+TEST(MapQuery, ATypeWithoutTheFeatureComesLast) {
+  MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
+  LandmarkType post = lamp_post();
+  post.name = "bollard", post.label_feature = post.size_feature = "diameter";
+  post.features.erase(post.features.begin());  // no height
+  const TypeId bollard = contents.types.add(post);
+  for (std::size_t i = 0; i < contents.landmarks.size(); ++i) {
+    Landmark& l = contents.landmarks[i];
+    if (i % 20 == 3) continue;
+    l.type = bollard;
+    l.features.erase(l.features.begin());
+    l.quality.feature_confidences.erase(l.quality.feature_confidences.begin());
+  }
+  const TemporaryFolder folder;
+  write_map(folder / "map.gpkg", contents);
+  const MapStore map = MapStore::open(folder / "map.gpkg");
+  const std::vector<std::string> all = uids(map.query({.largest_first = "height", .limit = 60'000}));
+  ASSERT_EQ(all.size(), 60'000u);
+  std::vector<Landmark> posts;
+  for (const Landmark& l : contents.landmarks)
+    if (l.type != bollard) posts.push_back(l);
+  std::ranges::stable_sort(posts, std::greater{}, [](const Landmark& l) { return l.features[0].value; });
+  const std::vector<std::string> expected = uids(posts);
+  for (const std::size_t limit : {std::size_t{1}, posts.size(), posts.size() + 1, posts.size() + 500}) {
+    const auto found =
+        uids(map.query({.largest_first = "height", .limit = static_cast<std::int64_t>(limit)}));
+    EXPECT_EQ(found, std::vector<std::string>(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(limit)));
+    const std::size_t shown = std::min(limit, posts.size());
+    EXPECT_TRUE(
+        std::equal(expected.begin(), expected.begin() + static_cast<std::ptrdiff_t>(shown), found.begin()));
+  }
+}
+
 // The most common value of all: an index of it would be one of the whole map, and a scan may stop early.
 TEST(MapQuery, ManyEqualLargestValuesNeedNoIndexOfAll) {
   MapContents contents = scattered({.landmarks = 60'000, .with_evidence = 0});
