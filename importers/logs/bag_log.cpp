@@ -18,6 +18,7 @@
 #include "importers/logs/import_log.hpp"
 #include "importers/logs/level_pose.hpp"
 #include "importers/logs/odometry_steps.hpp"
+#include "importers/logs/zstd.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
 
@@ -44,7 +45,7 @@ class BagReader {
       : path_(path), wanted_(topics) {}
 
   void read(const BagMessage& message) {
-    guarded(message, [&] { topics_.add(message); });
+    guarded(message, [&](const BagMessage& plain) { topics_.add(plain); });
   }
 
   /// Returns the topic of point clouds to read with read_clouds(), if there is any.
@@ -60,8 +61,8 @@ class BagReader {
   void read_cloud_of(const ChosenClouds& chosen, const localization::PointDetector& detect,
                      const BagMessage& message) {
     if (message.topic != chosen.topic || message.type != "sensor_msgs/msg/PointCloud2") return;
-    guarded(message, [&] {
-      BagCloud cloud = read_cloud(message);
+    guarded(message, [&](const BagMessage& plain) {
+      BagCloud cloud = read_cloud(plain);
       const localization::Pose2 mount = level_pose(chosen.body_from_sensor);
       const Eigen::Matrix3f upright =
           (Eigen::AngleAxisd(-mount.yaw, Eigen::Vector3d::UnitZ()) * chosen.body_from_sensor.linear())
@@ -85,7 +86,9 @@ class BagReader {
           unsound_ ? fmt::format("no message of the bag can be read; the first bad one is {}", first_unsound_)
                    : "the bag has neither odometry nor scans",
           path_.string(),
-          "Odometry of nav_msgs, and LaserScan, PointCloud2, Imu and NavSatFix of sensor_msgs are read");
+          fmt::format("Odometry of nav_msgs, and LaserScan, PointCloud2, Imu and NavSatFix of sensor_msgs "
+                      "are read; {}",
+                      topics_.contents()));
     check_wanted();
   }
 
@@ -108,6 +111,12 @@ class BagReader {
     bool lacks_yaw = false;
     if (odometry != topics_.odometry.end()) {
       lacks_yaw = odometry->second.lacks_yaw();
+      constexpr double kMaxDelay = 1;  // seconds that messages may come late
+      if (const double back = odometry->second.jump_back; back > kMaxDelay)
+        log_.remarks.push_back(fmt::format(
+            "the clock of {} jumps back by {:.3g} s, as when a simulator starts again or a bag is "
+            "played in a loop: the drives are mixed; split the recording there",
+            odometry->first, back));
       poses = std::move(odometry->second.poses);
       std::ranges::stable_sort(poses, {}, &localization::StampedPose::t);
     }
@@ -121,7 +130,11 @@ class BagReader {
   template <class Read>
   void guarded(const BagMessage& message, const Read& read) {
     try {
-      read();
+      // rosbag2 compresses single messages in its mode `message`.
+      const std::string content = is_zstd(message.bytes) ? unpacked_zstd(message.bytes) : std::string();
+      BagMessage plain = message;
+      if (!content.empty()) plain.bytes = content;
+      read(plain);
     } catch (const std::runtime_error& problem) {
       if (++unsound_ == 1) first_unsound_ = fmt::format("of topic {}: {}", message.topic, problem.what());
     }
@@ -258,28 +271,7 @@ bool shows_in_clouds(const TypeRegistry& types, std::span<const TypeId> held) {
                              });
 }
 
-std::vector<std::string> visit_bag(const std::filesystem::path& path, const BagVisitor& visit) {
-  std::vector<std::string> remarks;
-  for (const std::filesystem::path& file : bag_files(path)) {
-    if (file.extension() == ".mcap")
-      std::ranges::move(visit_mcap(file, visit), std::back_inserter(remarks));
-    else
-      visit_rosbag2(file, visit);
-  }
-  return remarks;
-}
-
 }  // namespace
-
-std::vector<std::filesystem::path> bag_files(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return {path};
-  std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(path))
-    if (entry.path().extension() == ".db3" || entry.path().extension() == ".mcap")
-      files.push_back(entry.path());
-  std::ranges::sort(files);
-  return files;
-}
 
 localization::RobotLog import_bag_log(const std::filesystem::path& path, const TypeRegistry& types,
                                       const std::vector<std::string>& topics, std::span<const TypeId> held) {

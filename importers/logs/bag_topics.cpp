@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/logs/bag_topics.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -15,6 +18,7 @@ void add_odometry(BagTopics& topics, const BagMessage& message) {
   BagOdometry one = read_odometry(message);
   OdometryTopic& topic = topics.odometry[std::string(message.topic)];
   if (topic.poses.empty()) topic.body = std::move(one.body);
+  if (!topic.poses.empty()) topic.jump_back = std::max(topic.jump_back, topic.poses.back().t - one.at.t);
   topic.poses.push_back({one.at.t, level_pose(one.pose)});
   constexpr double kAnyYaw = std::numbers::pi * std::numbers::pi;  // rad^2; nothing is known of such a yaw
   topic.unknown_yaws += !(one.yaw_variance >= 0 && one.yaw_variance < kAnyYaw);
@@ -103,6 +107,19 @@ std::vector<std::string> BagTopics::names() const {
   };
   add_of(odometry), add_of(scans), add_of(clouds), add_of(imus), add_of(fixes);
   return known;
+}
+
+std::string BagTopics::contents() const {
+  constexpr std::size_t kMax = 8;
+  std::vector<std::string> all;
+  for (const auto& [name, topic] : imus)
+    all.push_back(fmt::format("{} of sensor_msgs/msg/Imu ({})", name, topic.readings.size()));
+  for (const auto& [what, count] : others)
+    all.push_back(fmt::format("{} of {} ({})", what.first, what.second, count));
+  if (all.empty()) return "it has no messages";
+  const std::size_t more = all.size() > kMax ? all.size() - kMax : 0;
+  all.resize(all.size() - more);
+  return fmt::format("it has {}{}", fmt::join(all, ", "), more ? fmt::format(" and {} more", more) : "");
 }
 
 }  // namespace waymark::importers

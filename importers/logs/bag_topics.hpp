@@ -15,6 +15,7 @@ struct OdometryTopic {
   std::string body = {};  ///< frame that the poses are of
   std::vector<localization::StampedPose> poses = {};
   std::size_t unknown_yaws = 0;  ///< poses that state no use of their yaw
+  double jump_back = 0;          ///< s, most that a message is older than the one before it
 
   /// Returns whether the yaw is not measured: drivers then state a large variance, or leave it at 0.
   bool lacks_yaw() const;
@@ -57,6 +58,9 @@ struct BagTopics {
 
   /// Returns the names of the topics that are read.
   std::vector<std::string> names() const;
+  /// Returns a sentence on the topics without odometry, scans, clouds and fixes, with their numbers of
+  /// messages.
+  std::string contents() const;
 };
 
 }  // namespace waymark::importers

@@ -21,13 +21,16 @@ std::string recognised(const fs::path& path) {
     if (is_point_log(path)) return "points";
     throw Error(ErrorCode::input, "the folder holds no log of a known format", path.string(),
                 "known are MRCLAM (Barcodes.dat), Victoria Park (LASER.txt, DRS.txt), bags of ROS 2 (.db3, "
-                ".mcap) and 3-D scans (.bin, .ply)");
+                ".mcap, also with .zstd behind) and 3-D scans (.bin, .ply)");
   }
   if (!fs::exists(path))
     throw Error(ErrorCode::input, "there is no such log", path.string(), "check the path");
   if (path.extension() == ".csv" || path.extension() == ".tsv") return "csv";
-  if (path.extension() == ".db3") return "rosbag2";
-  if (path.extension() == ".mcap") return "mcap";
+  if (begins_like_ros1(path))
+    throw Error(ErrorCode::input, "the file is a bag of ROS 1", path.string(),
+                "bags of ROS 2 are read: `rosbags-convert` (python3 -m pip install rosbags) converts it");
+  if (begins_like_mcap(path)) return "mcap";
+  if (is_bag(path)) return path.extension() == ".mcap" ? "mcap" : "rosbag2";
   if (path.extension() == ".dat") return "mrclam";
   const std::string name = path.filename().string();
   if (path.extension() == ".clf" || name.ends_with(".clf.gz") || name.ends_with(".clf.bz2")) return "carmen";

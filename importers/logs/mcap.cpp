@@ -14,7 +14,6 @@
 namespace waymark::importers {
 namespace {
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
 constexpr std::uint64_t kRecordHead = 9;  // opcode and length
 enum Opcode : unsigned char { kSchema = 3, kChannel = 4, kMessage = 5, kChunk = 6, kDataEnd = 15 };
 
@@ -65,14 +64,16 @@ class McapReader {
 
  private:
   struct Channel {
-    std::string topic, type, encoding;
+    std::string topic, type;
   };
 
   void channel(McapFields& fields) {
     const auto id = fields.number<std::uint16_t>(), schema = fields.number<std::uint16_t>();
     const std::string_view topic = fields.text(), encoding = fields.text();
     const auto type = schemas_.find(schema);
-    channels_[id] = {std::string(topic), type == schemas_.end() ? "" : type->second, std::string(encoding)};
+    Channel& channel = channels_[id];
+    channel = {std::string(topic), type == schemas_.end() ? "" : type->second};
+    if (encoding != "cdr") channel.type += fmt::format(" (encoded as {})", encoding);
   }
 
   void message(McapFields& fields) {
@@ -80,8 +81,7 @@ class McapReader {
     if (channel == channels_.end()) throw std::runtime_error("a message has no channel");
     fields.number<std::uint32_t>();  // sequence
     const auto received = fields.number<std::uint64_t>();
-    fields.number<std::uint64_t>();                 // published
-    if (channel->second.encoding != "cdr") return;  // JSON and others of tools beside ROS
+    fields.number<std::uint64_t>();  // published
     visit_({.topic = channel->second.topic,
             .type = channel->second.type,
             .received = static_cast<std::int64_t>(received),
@@ -117,13 +117,13 @@ std::vector<std::string> visit_mcap(const std::filesystem::path& file, const Bag
   const auto read = [&](std::uint64_t offset, std::string& into) {
     return in.read(offset, into.data(), into.size()) == into.size();
   };
-  std::string content(kMagic.size(), '\0');
-  if (!read(0, content) || content != kMagic)
+  std::string content(kMcapMagic.size(), '\0');
+  if (!read(0, content) || content != kMcapMagic)
     throw Error(ErrorCode::input, "the file does not begin like an MCAP file", file.string(),
                 "check the path; MCAP of format version 0 is read");
   McapReader reader(visit);
   std::string head(kRecordHead, '\0');
-  std::uint64_t at = kMagic.size();
+  std::uint64_t at = kMcapMagic.size();
   while (size - at >= kRecordHead && read(at, head)) {
     McapFields fields(head);
     const auto opcode = fields.number<unsigned char>();

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/logs/mcap_chunk.hpp"
 
-#include <cpl_compressor.h>
 #include <fmt/format.h>
 #include <lz4frame.h>
 
 #include <memory>
 #include <new>
 #include <stdexcept>
+
+#include "importers/logs/zstd.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -46,19 +47,6 @@ std::string unpacked_lz4(std::string_view bytes, std::uint64_t size) {
   return out;
 }
 
-std::string unpacked_by_gdal(const std::string& compression, std::string_view bytes, std::uint64_t size) {
-  const CPLCompressor* codec = CPLGetDecompressor(compression.c_str());
-  if (codec == nullptr)
-    throw std::runtime_error(fmt::format("its chunks are compressed by '{}'", compression));
-  std::string out(static_cast<std::size_t>(size), '\0');
-  void* into = out.data();
-  std::size_t written = out.size();
-  if (!codec->pfnFunc(bytes.data(), bytes.size(), &into, &written, nullptr, codec->user_data))
-    throw std::runtime_error("its content cannot be decompressed");
-  out.resize(written);
-  return out;
-}
-
 }  // namespace
 
 std::string unpacked_chunk(std::string_view compression, std::string_view bytes, std::uint64_t size) {
@@ -68,7 +56,7 @@ std::string unpacked_chunk(std::string_view compression, std::string_view bytes,
   if (compression == "lz4")
     out = unpacked_lz4(bytes, size);
   else if (compression == "zstd")
-    out = unpacked_by_gdal("zstd", bytes, size);
+    out = unpacked_zstd(bytes, size);
   else
     throw std::runtime_error(fmt::format("its chunks are compressed by '{}'", compression));
   if (out.size() != size) throw std::runtime_error("it has less content than it states");
