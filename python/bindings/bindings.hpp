@@ -17,6 +17,8 @@ void bind_reconstruction(pybind11::module_& module);
 void bind_localization(pybind11::module_& module);
 /// Adds routes and hazard maps.
 void bind_planning(pybind11::module_& module);
+/// Adds inventories of forests.
+void bind_forest(pybind11::module_& module);
 /// Adds web maps.
 void bind_web(pybind11::module_& module);
 /// Adds the comparison with truth.

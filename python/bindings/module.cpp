@@ -42,6 +42,7 @@ PYBIND11_MODULE(_waymark, module) {
   bind_reconstruction(module);
   bind_localization(module);
   bind_planning(module);
+  bind_forest(module);
   bind_web(module);
   bind_evaluation(module);
 }

@@ -13,6 +13,7 @@ from .detection import (
     detect, find_craters, find_craters_in_dem, find_mountain_tops, find_rocks, find_trees, map_images)
 from .errors import EnvironmentError, Error, InputError, OutputError, UnitsFailed, UsageError, Warning
 from .evaluation import evaluate, evaluate_track
+from .forest import inventory
 from .localization import Localization, localize, localize_methods, localize_settings
 from .mapping import Run, merge, run, simulate
 from .maps import Feature, LandmarkType, Map, open, read_map
@@ -24,6 +25,7 @@ __version__ = _version.removeprefix("waymark ").split()[0]
 __all__ = [
     "EnvironmentError", "Error", "Feature", "InputError", "LandmarkType", "Localization", "Map", "OutputError", "Run",
     "UnitsFailed", "UsageError", "Warning", "detect", "evaluate", "evaluate_track", "find_craters",
-    "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "localize",
-    "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map", "reconstruct", "route", "run", "simulate", "stages", "web",
+    "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "inventory", "localize",
+    "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map", "reconstruct", "route", "run",
+    "simulate", "stages", "web",
 ]

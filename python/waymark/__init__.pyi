@@ -766,6 +766,12 @@ class Map:
     def __getitem__(self, type: Any) -> np.ndarray:
         """"""
         ...
+    def __iter__(self) -> Iterator[str]:
+        """Yields the names of the types that the map has landmarks of."""
+        ...
+    def __contains__(self, type: Any) -> bool:
+        """Whether the map has landmarks of a type."""
+        ...
     def query(self, types: Any = ..., *, bbox: Sequence[Any] | _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> dict[str, np.ndarray]:
         """Returns a structured array per type: {"rock": array, ...}.
 
@@ -971,6 +977,24 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         crs: of a DEM whose file has none
         tile_cells
         threads"""
+    ...
+
+def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any = ..., stands_layer: _Path = ..., grid: float = ..., allometry: _Path = ..., volume: _Path = ..., recall: _Path = ..., max_trees: int = ..., class_width: float = ..., report: _Path = ...) -> list[dict[str, Any]]:
+    """Counts the trees of a map by stand, as `waymark inventory`; returns a list with a dict for each stand.
+
+    stands is a layer of polygons in any CRS; without it and without `grid` the whole map is one stand. The keys are
+    the columns of docs/reference/inventory_table.md, so pandas.DataFrame(waymark.inventory(map)) is the table. An
+    unknown number is None. Raises UnitsFailed if some stands have no area; its `result` has the others.
+
+    Keywords:
+        stands_layer: of a file that holds several
+        grid: metres, side of square cells in place of stands; 0: none
+        allometry: table of stem diameters by species; empty: those of the map
+        volume: table of form factors by species; empty: 0.47 +- 0.04 for all
+        recall: table of detection rates by height; empty: all trees were detected
+        max_trees: trees held in memory, 1 kB each; figures do not depend on it
+        class_width: centimetres, of diameter classes
+        report: .html to write; empty: none"""
     ...
 
 def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ..., start: Any = ..., progress: Any = ..., output: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., seed: int = ..., log_format: _Path = ..., columns: _Path = ..., topic: Sequence[Any] | _Path = ..., robot: int = ..., use_identities: bool = ..., write_map: _Path = ..., update_map: bool = ..., dem: Sequence[Any] | _Path = ..., in_map_crs: bool = ..., layers: _Path = ..., timing: bool = ..., live: float = ..., threads: int = ...) -> Localization:

@@ -2,6 +2,7 @@
 """Detectors: rocks, craters and trees in images; mountain tops, craters and trees in rasters of heights."""
 
 import csv
+import difflib
 import io
 import json
 import os
@@ -54,8 +55,14 @@ def _with_options(job, options):
     """Sets each option in the only stage of the job that has it."""
     for name, value in options.items():
         stages = [stage for stage in job["stages"] if name in stage]
-        if len(stages) != 1:
-            raise TypeError(f"{len(stages)} stages of {job['name']} have an option '{name}'")
+        if len(stages) > 1:
+            names = ", ".join(stage["stage"] for stage in stages)
+            raise TypeError(f"'{name}' is an option of several stages ({names}): use waymark.run with settings")
+        if not stages:
+            known = [known for stage in job["stages"] for known in stage if known != "stage"]
+            near = difflib.get_close_matches(name, known, 1)
+            hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(dict.fromkeys(known))}"
+            raise TypeError(f"there is no option '{name}'; {hint}")
         stages[0][name] = value
     return job
 

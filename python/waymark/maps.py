@@ -51,6 +51,14 @@ def _structured(columns):
     return table
 
 
+def _named(wkt):
+    """Returns "EPSG:32632" for a CRS that has such a code, as geopandas prints what it was given."""
+    import pyproj
+
+    code = pyproj.CRS.from_user_input(wkt).to_authority(auth_name="EPSG", min_confidence=100)
+    return ":".join(code) if code else wkt
+
+
 class Map:
     """A map file, opened for reading. The file is not changed, and nothing of it stays open."""
 
@@ -72,6 +80,14 @@ class Map:
 
     def __getitem__(self, type):
         return self.landmarks(type)
+
+    def __iter__(self):
+        """Yields the names of the types that the map has landmarks of."""
+        return (name for name, one in self.types.items() if one.count)
+
+    def __contains__(self, type):
+        """Whether the map has landmarks of a type."""
+        return type in self.types and self.types[type].count > 0
 
     def __repr__(self):
         counts = ", ".join(f"{one.count} {name}" for name, one in self.types.items() if one.count)
@@ -118,7 +134,10 @@ class Map:
     @takes("query", but=["types"], more=True)
     def to_geopandas(self, type=None, **conditions):
         """Returns the landmarks of one type as a GeoDataFrame of points, indexed by uid."""
-        import geopandas
+        try:
+            import geopandas
+        except ImportError as missing:
+            raise ImportError("to_geopandas needs geopandas: apt install python3-geopandas") from missing
         import pandas
 
         type = type or self._only_type()
@@ -126,7 +145,7 @@ class Map:
         table = _structured(found["types"][type])
         frame = pandas.DataFrame({name: table[name] for name in table.dtype.names if name not in ("x", "y", "z")})
         points = geopandas.points_from_xy(table["x"], table["y"], table["z"])
-        return geopandas.GeoDataFrame(frame.set_index("uid"), geometry=points, crs=found["crs"])
+        return geopandas.GeoDataFrame(frame.set_index("uid"), geometry=points, crs=_named(found["crs"]))
 
     def _only_type(self):
         filled = [name for name, one in self.types.items() if one.count]

@@ -20,6 +20,7 @@ SPELLED = {
                  "format": None},
     "route": {"from": "start", "to": "goal", "ids": "identities_known", "format": None},
     "hazards": {"format": None},
+    "inventory": {"memory": "max_trees", "trees-at-once": None, "format": None},
     "reconstruct": {"output": "folder", "map-landmarks": "map", "map": "map_image", "format": None},
     "simulate": {"output": "folder", "format": None},
     "evaluate": {"format": None},

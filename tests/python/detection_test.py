@@ -111,8 +111,10 @@ def test_trees_of_a_canopy_array_are_where_they_were_put(tmp_path):
 
 
 def test_options_of_no_stage_are_refused():
-    with pytest.raises(TypeError, match="min_prominenz"):
+    with pytest.raises(TypeError, match="no option 'min_prominenz'; did you mean 'min_prominence'"):
         waymark.find_mountain_tops(DEM, min_prominenz=5)
+    with pytest.raises(TypeError, match="no option 'qqqq'; known are .*min_prominence"):
+        waymark.find_mountain_tops(DEM, qqqq=5)
     with pytest.raises(waymark.UsageError, match="min_prominence"):
         waymark.find_mountain_tops(DEM, min_prominence=-5)
 

@@ -130,6 +130,19 @@ def test_simulate_makes_the_files_of_the_program(tmp_path):
     assert truth[0] == truth[1] and len(truth[0]) > 1000
 
 
+def test_a_simulation_stops_between_images(tmp_path):
+    stages = []
+
+    def stop(stage, done, total, rate):
+        stages.append(stage)
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        waymark.simulate(SOURCE / "sample_data/mars_landing/scenario.json", tmp_path / "site", progress=stop)
+    assert stages == ["render_images"]
+    assert not (tmp_path / "site/scenario.json").exists()
+
+
 def test_a_web_map_has_the_bytes_of_the_program(tmp_path):
     made = waymark.run(job(), tmp_path / "map.gpkg")
     counts = waymark.web(made.map, tmp_path / "python", terrain_pixels=64, title="Tops")

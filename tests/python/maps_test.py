@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 import csv
 import io
+import sys
 
 import numpy as np
 import pytest
@@ -49,6 +50,19 @@ def test_types_and_crs_describe_the_map(peaks_map):
     assert not map.is_local
 
 
+def test_a_map_holds_the_names_of_its_types(peaks_map):
+    map = waymark.open(peaks_map)
+    assert "mountain_top" in map and "rock" not in map and 7 not in map
+    assert list(map) == ["mountain_top"]
+    assert {name: len(map[name]) for name in map} == {"mountain_top": len(map)}
+
+
+def test_a_missing_geopandas_is_named_with_its_package(peaks_map, monkeypatch):
+    monkeypatch.setitem(sys.modules, "geopandas", None)
+    with pytest.raises(ImportError, match="apt install python3-geopandas"):
+        waymark.open(peaks_map).to_geopandas()
+
+
 def test_geopandas_has_the_points_and_the_crs(peaks_map):
     geopandas = pytest.importorskip("geopandas")
     map = waymark.open(peaks_map)
@@ -59,6 +73,7 @@ def test_geopandas_has_the_points_and_the_crs(peaks_map):
     np.testing.assert_array_equal(frame.geometry.x, tops["x"])
     np.testing.assert_array_equal(frame.geometry.z, tops["z"])
     np.testing.assert_array_equal(frame["prominence"], tops["prominence"])
+    assert map.to_geopandas(crs="EPSG:32616").crs.srs == "EPSG:32616"  # what geopandas prints
     degrees = frame.to_crs("EPSG:4326")
     printed = list(csv.DictReader(io.StringIO(program("query", peaks_map, "--format", "csv", "--crs", "EPSG:4326",
                                                       "--min", "prominence=100"))))
