@@ -18,6 +18,7 @@
 #include "exporters/raster/raster_file.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "geo/crs.hpp"
+#include "pipeline/engine/progress_meter.hpp"
 #include "testbed/drive/drive_log.hpp"
 #include "testbed/landing/lit_terrain.hpp"
 #include "testbed/scenario.hpp"
@@ -85,7 +86,7 @@ std::string landing_job(const testbed::Scenario& scenario) {
 }
 
 void write_site(const fs::path& folder, const testbed::Scenario& scenario, const testbed::Scene& scene,
-                const std::vector<testbed::Shot>& shots, const Crs& crs) {
+                const std::vector<testbed::Shot>& shots, const Crs& crs, const Callbacks& callbacks) {
   for (const char* part : {"images", "truth"}) make_folder(folder / part);
   const double unit = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
   const auto write_dem = [&](const char* name, const testbed::SimulatedDem& dem) {
@@ -97,11 +98,14 @@ void write_site(const fs::path& folder, const testbed::Scenario& scenario, const
     write_dem("orbital_dem.tif", testbed::simulate_dem(scenario.orbital_dem, scene, "orbital dem errors"));
   const testbed::LitTerrain ground(scene, scenario.exposure.sun);
   const auto seed = static_cast<std::uint64_t>(scenario.seed);
+  pipeline::ProgressMeter meter(callbacks.progress, "render_images", static_cast<std::int64_t>(shots.size()));
   for (const testbed::Shot& shot : shots) {
     const Pixels image = testbed::render_view(scene, ground, testbed::view_of(shot), scenario.exposure,
                                               named_seed(seed, shot.name));
     exporters::write_image(folder / "images" / shot.name, image, static_cast<int>(scenario.bits));
+    meter.add(1);
   }
+  meter.finish();
   const testbed::TruthTables truth = testbed::truth_tables(scenario, scene, shots);
   write_file(folder / "cameras.json", testbed::camera_file(scenario, shots, false));
   write_file(folder / "job.json", landing_job(scenario));
@@ -254,7 +258,7 @@ SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbac
   }
   check_other_images(fs::path(request.folder) / "images", shots);
   write_scene(request.folder, [&](const fs::path& folder) {
-    write_site(folder, scenario, scene, shots, crs);
+    write_site(folder, scenario, scene, shots, crs, callbacks);
     if (scenario.drive.on) add_drive(folder);
   });
   if (!drive.empty()) callbacks.summary(drive + "\n");
