@@ -29,8 +29,8 @@ class MapDrive final : public Command {
                  .offering(Offer::file),
              Argument{"-o,--output", "MAP.gpkg", &request_.map, "Map to write"}.needed().offering(
                  Offer::file),
-             Argument{"--poses", "TRACK.csv", &request_.poses,
-                      "Poses of the robot: columns t, x, y, yaw; seconds, metres, radians"}
+             Argument{"--poses", "TRACK", &request_.poses,
+                      "Poses of the robot: .csv with t, x, y, yaw (seconds, metres, radians), or TUM"}
                  .offering(Offer::file)
                  .or_else("the true poses of the log"),
              Argument{"--scans", "NAME,...", &request_.scans,

@@ -31,7 +31,7 @@ class View final : public Command {
                  .offering(Offer::file)
                  .or_else("that of the scene"),
              Argument{"--track", "[NAME=]TRACK", &request_.tracks,
-                      "Track of `waymark localize` (.csv, map frame); may be repeated"}
+                      "Track of `waymark localize` (.csv or .tum, map frame); may be repeated"}
                  .offering(Offer::file),
              Argument{"--dem", "DEM", &request_.dem, "Elevation model; may be repeated"}
                  .offering(Offer::file)

@@ -16,6 +16,7 @@
 #include "core/output_error.hpp"
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
+#include "exporters/vector/track_formats.hpp"
 #include "geo/point_at_height.hpp"
 #include "geodb/replace_map.hpp"
 
@@ -159,7 +160,9 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
 }
 
 localization::Track read_track_csv(const fs::path& file) {
-  std::istringstream in(read_text(file, "the track"));
+  const std::string content = read_text(file, "the track");
+  if (begins_like_tum(content)) return read_track_tum(content, file);
+  std::istringstream in(content);
   std::string line;
   if (!std::getline(in, line))
     throw Error(ErrorCode::input, "the track is empty", file.string(), "waymark localize writes such files");
@@ -174,8 +177,9 @@ localization::Track read_track_csv(const fs::path& file) {
     if (i < found.size()) found[i] = true;
   }
   if (!found[0] || !found[1] || !found[2])
-    throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
-                "waymark localize writes such files");
+    throw Error(
+        ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
+        "`waymark localize -o track.csv` writes such files; TUM (t x y z qx qy qz qw) is read as well");
   localization::Track track;
   bool wrong_known = found[kWrong];
   for (std::size_t number = 2; std::getline(in, line); ++number) {

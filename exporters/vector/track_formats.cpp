@@ -4,8 +4,14 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <sstream>
+#include <vector>
 
 #include "core/atomic_file.hpp"
+#include "core/error.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -44,6 +50,42 @@ std::string g2o_rows(const localization::TrackRow& row, std::size_t id) {
 }
 
 }  // namespace
+
+bool begins_like_tum(std::string_view content) {
+  const std::size_t first = content.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos &&
+         std::string_view("#+-.0123456789").find(content[first]) != std::string_view::npos;
+}
+
+localization::Track read_track_tum(std::string_view content, const std::filesystem::path& file) {
+  localization::Track track;
+  std::istringstream in{std::string(content)};
+  std::size_t number = 1;
+  for (std::string line; std::getline(in, line); ++number) {
+    std::istringstream words(line.substr(0, line.find('#')));
+    std::vector<double> v;
+    for (std::string word; words >> word;) {
+      double value = 0;
+      const auto [rest, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+      const bool is_number = problem == std::errc() && rest == word.data() + word.size();
+      v.push_back(is_number ? value : std::nan(""));
+    }
+    if (v.empty()) continue;
+    const bool finite = std::ranges::all_of(v, [](double one) { return std::isfinite(one); });
+    const double length = v.size() == 8 ? Eigen::Vector4d(v[4], v[5], v[6], v[7]).norm() : 0;
+    if (!finite || !(std::abs(length - 1) < 0.01) || !(std::abs(v[0]) <= 1e15))
+      throw Error(ErrorCode::input, "this line is no pose of TUM",
+                  fmt::format("{}, line {}", file.string(), number),
+                  "eight numbers separated by blanks: t x y z qx qy qz qw, the quaternion of length 1");
+    const Eigen::Matrix3d r = Eigen::Quaterniond(v[7], v[4], v[5], v[6]).normalized().toRotationMatrix();
+    localization::TrackRow& row = track.rows.emplace_back();
+    row.t = v[0], row.z = v[3];
+    row.at.pose = {v[1], v[2], std::atan2(r(1, 0), r(0, 0))};
+    row.pitch = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
+    row.roll = std::atan2(r(2, 1), r(2, 2));
+  }
+  return track;
+}
 
 void write_track_poses(const std::filesystem::path& file, const localization::Track& track,
                        TrackFormat format) {

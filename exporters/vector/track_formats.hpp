@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
+#include <string_view>
 #include "localization/track.hpp"
 namespace waymark::exporters {
 
@@ -14,5 +15,12 @@ enum class TrackFormat { tum, kitti, g2o };
 /// Error{output}.
 void write_track_poses(const std::filesystem::path& file, const localization::Track& track,
                        TrackFormat format);
+
+/// Returns whether a file begins with a number or a comment, as TUM does, and not with names of columns.
+bool begins_like_tum(std::string_view content);
+
+/// Returns the poses of a file of TUM; covariances are 0. `file` is for messages. Throws Error{input} with
+/// the line for other than eight numbers and for quaternions that are not of length 1.
+localization::Track read_track_tum(std::string_view content, const std::filesystem::path& file);
 
 }  // namespace waymark::exporters

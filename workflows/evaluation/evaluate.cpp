@@ -32,7 +32,7 @@ struct Truth {
 
 Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   const std::string& file = request.truth;
-  if (file.ends_with(".csv")) {
+  if (file.ends_with(".csv") || file.ends_with(".tum")) {
     Truth truth;
     for (const localization::TrackRow& row : exporters::read_track_csv(file).rows)
       truth.poses.push_back({row.t, row.at.pose});

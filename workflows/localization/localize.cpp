@@ -34,8 +34,11 @@ std::optional<exporters::TrackFormat> pose_format(const std::string& output) {
   return {};
 }
 
-void check_track_output(const std::string& output) {
+void check_track_output(const std::string& output, bool in_map_crs) {
   const std::filesystem::path file(output);
+  if (in_map_crs && pose_format(output))
+    throw Error(ErrorCode::usage, "poses of TUM, KITTI and g2o are metres of the map frame, not of its CRS",
+                output, "leave --crs out, or write a .csv or .gpkg");
   if (file.extension() != ".csv" && file.extension() != ".gpkg" && !pose_format(output))
     throw Error(ErrorCode::usage, "a track is written as .csv, .gpkg, .tum, .kitti or .g2o", output,
                 "e.g. -o track.csv");
@@ -232,7 +235,7 @@ std::vector<OptionRow> settings_of(const LocalizeRequest& request) {
 }  // namespace
 
 LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbacks) {
-  if (!request.output.empty()) check_track_output(request.output);
+  if (!request.output.empty()) check_track_output(request.output, request.in_map_crs);
   MethodTable methods;  // of this call: a method keeps its settings
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);

@@ -11,7 +11,7 @@ namespace waymark::workflows {
 /// A drive with known poses that becomes a map.
 struct DriveMapRequest {
   std::string log;            ///< file, or folder of a dataset
-  std::string poses;          ///< track.csv: t, x, y, yaw; empty: the true poses of the log
+  std::string poses;          ///< track.csv: t, x, y, yaw, or TUM; empty: the true poses of the log
   std::string map;            ///< to write; an older map of that name is replaced
   std::string crs = "local";  ///< of the poses, local or projected
   importers::LogImport log_format = {};

@@ -150,6 +150,24 @@ TEST_F(CsvLog, TracksForOtherTools) {
   EXPECT_NEAR(kitti[7], last.at("y"), 1e-5);
   EXPECT_NEAR(std::atan2(kitti[4], kitti[0]), last.at("yaw"), 1e-5);
   EXPECT_THAT(text_of(folder_ / "a.g2o"), HasSubstr("VERTEX_SE2 0 1.000000 2.000000 0.5"));
+  // What is written is read again, and a positional CRS is never left out silently.
+  const auto score = [&](const char* name) {
+    const Outcome said =
+        waymark({"evaluate", "track", folder_ / name, "--truth", folder_ / "a.csv", "--format", "json"});
+    EXPECT_EQ(said.code, 0) << name << said.err;
+    return nlohmann::json::parse(said.out)["ate_rmse"].get<double>();
+  };
+  EXPECT_LT(score("a.tum"), 1e-5);
+  EXPECT_EQ(score("a.csv"), 0);
+  const Outcome by_tum =
+      waymark({"evaluate", "track", folder_ / "a.csv", "--truth", folder_ / "a.tum", "--format", "json"});
+  EXPECT_LT(nlohmann::json::parse(by_tum.out)["heading_rmse_deg"].get<double>(), 1e-4);
+  write_text(folder_ / "bad.tum", "# t x y z qx qy qz qw\n0 1 2 0 0 0 0 1\n1 1 2 0 0 0 0 2\n");
+  EXPECT_THAT(waymark({"evaluate", "track", folder_ / "bad.tum", "--truth", folder_ / "a.csv"}).err,
+              AllOf(HasSubstr("no pose of TUM"), HasSubstr("bad.tum, line 3")));
+  const Outcome in_crs = run(drive, {"--start", "1,2,0.5", "--crs"}, "b.tum");
+  EXPECT_EQ(in_crs.code, 2);
+  EXPECT_THAT(in_crs.err, HasSubstr("metres of the map frame, not of its CRS"));
   EXPECT_THAT(run(drive, {"--start", "1,2,0.5"}, "a.txt").err,
               HasSubstr(".csv, .gpkg, .tum, .kitti or .g2o"));
 }
