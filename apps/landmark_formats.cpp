@@ -69,13 +69,24 @@ std::string csv_cell(const AttributeValue& value) {
   return "";
 }
 
-/// Rounds degrees and metres to about a decimetre, other numbers to three places.
-std::string table_cell(const RowColumn& column, const AttributeValue& value, bool degrees) {
+/// Returns the decimals of a column for people: positions and large lengths in decimetres, lengths below 100
+/// m in centimetres, below 2 m in millimetres; other numbers have three.
+int decimals(const RowColumn& column, std::span<const Landmark> landmarks, bool degrees) {
+  if (column.name == "x" || column.name == "y") return degrees ? 6 : 1;
+  if (column.unit != "m") return 3;
+  double largest = 0;
+  for (const Landmark& landmark : landmarks) {
+    const AttributeValue value = column.value(landmark);
+    if (const auto* real = std::get_if<double>(&value)) largest = std::max(largest, std::abs(*real));
+  }
+  return largest < 2 ? 3 : largest < 100 ? 2 : 1;
+}
+
+std::string table_cell(const AttributeValue& value, int decimals) {
   const auto* real = std::get_if<double>(&value);
   if (const auto* text = std::get_if<std::string>(&value)) return printable(*text, kMaxCell);
   if (!real) return std::holds_alternative<std::monostate>(value) ? "-" : csv_cell(value);
-  const bool position = column.name == "x" || column.name == "y";
-  return fmt::format("{:.{}f}", *real, position && degrees ? 6 : position || column.unit == "m" ? 1 : 3);
+  return fmt::format("{:.{}f}", *real, decimals);
 }
 
 std::string heading(const RowColumn& column) {
@@ -138,11 +149,15 @@ void print_table(std::ostream& out, std::span<const RowColumn> columns, std::spa
   for (const RowColumn& column : columns)
     if (column.brief) brief.push_back(&column);
   std::vector<std::vector<std::string>> lines(1);
-  for (const RowColumn* column : brief) lines[0].push_back(heading(*column));
+  std::vector<int> places;
+  for (const RowColumn* column : brief) {
+    lines[0].push_back(heading(*column));
+    places.push_back(decimals(*column, landmarks, crs.kind() == CrsKind::geographic));
+  }
   for (const Landmark& landmark : landmarks) {
     std::vector<std::string>& line = lines.emplace_back();
-    for (const RowColumn* column : brief)
-      line.push_back(table_cell(*column, column->value(landmark), crs.kind() == CrsKind::geographic));
+    for (std::size_t i = 0; i < brief.size(); ++i)
+      line.push_back(table_cell(brief[i]->value(landmark), places[i]));
   }
   std::vector<std::size_t> widths(brief.size());
   for (const auto& line : lines)

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
 
 #include "core/error.hpp"
 #include "workflows/parse_number.hpp"
@@ -137,9 +139,17 @@ std::vector<std::string> rename_options(std::span<const Argument> arguments,
 
 [[noreturn]] void refuse_unknown(const std::string& who, std::span<const Argument> arguments,
                                  const std::string& word) {
-  if (!word.starts_with('-') || word == "-")
+  if (!word.starts_with('-') || word == "-") {
+    // A file in the place of an option's: `waymark trees points.laz`.
+    std::string inputs;
+    for (const Argument& one : arguments)
+      if (one.offer == Offer::file && !one.positional() && display_name(one) != "--output")
+        inputs += (inputs.empty() ? "" : ", ") + display_name(one);
+    std::error_code unknown;
+    const bool is_file = !inputs.empty() && std::filesystem::exists(word, unknown);
     throw Error(ErrorCode::usage, who + " has no use for the word '" + word + "'", "",
-                "`" + who + " --help` shows what it takes");
+                is_file ? "files are given by " + inputs : "`" + who + " --help` shows what it takes");
+  }
   const std::string name = word.substr(0, word.find('='));
   const std::string nearest = nearest_name(name, option_names(arguments));
   throw Error(ErrorCode::usage, who + " has no option '" + name + "'", "",

@@ -6,6 +6,7 @@
 #include <gdal_priv.h>
 
 #include <mutex>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "importers/standard_input.hpp"
@@ -18,6 +19,16 @@ bool is_plain_path(const std::string& path) {
   return path.starts_with('/') || path.find_first_of(":<") == std::string::npos;
 }
 
+bool begins_like_las(const std::string& path) {
+  char head[4] = {};
+  VSILFILE* file = VSIFOpenL(path.c_str(), "rb");
+  if (file == nullptr) return false;
+  const bool is_las =
+      VSIFReadL(head, 1, sizeof head, file) == sizeof head && std::string_view(head, sizeof head) == "LASF";
+  VSIFCloseL(file);
+  return is_las;
+}
+
 [[noreturn]] void refuse(const std::string& path, const std::string& said) {
   VSIStatBufL status;
   const bool exists = VSIStatL(path.c_str(), &status) == 0;
@@ -25,6 +36,9 @@ bool is_plain_path(const std::string& path) {
     throw Error(ErrorCode::input, "there is no such file", path, "check the path");
   if (exists && status.st_size == 0 && !VSI_ISDIR(status.st_mode))
     throw Error(ErrorCode::input, "the file is empty", path, "fetch or write it again");
+  if (begins_like_las(path))
+    throw Error(ErrorCode::input, "these are laser points, no raster", path,
+                "`waymark trees` reads them by --las; elsewhere a raster of heights is needed");
   throw Error(ErrorCode::input, "this is not a raster that GDAL reads" + (said.empty() ? "" : ": " + said),
               path, "`gdalinfo --formats` lists what can be read; a damaged file must be fetched again");
 }

@@ -107,10 +107,13 @@ class PointCanopy final : public ImportedCanopy {
 
  private:
   void check_points() {
+    const auto out = catalogue_.excluded();
     if (catalogue_.points() == 0)
-      throw Error(ErrorCode::input, "the files hold no points", import_.las[0],
-                  "check that they are the right ones");
-    if (const auto out = catalogue_.excluded(); out > 0)
+      throw Error(ErrorCode::input,
+                  out > 0 ? fmt::format("all {} points are noise (classes 7 and 18) or withheld", out)
+                          : "the files hold no points",
+                  import_.las[0], "check that they are the right ones");
+    if (out > 0)
       warnings_.push_back(fmt::format("{}: {}{} points are noise or withheld and are skipped", import_.las[0],
                                       catalogue_.all_read() ? "" : "at least ", out));
   }

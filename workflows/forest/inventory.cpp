@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "core/atomic_file.hpp"
@@ -28,6 +29,10 @@ void check_request(const InventoryRequest& request) {
     check_map_output(request.output);
   else if (extension != ".csv" && !request.output.empty())
     throw Error(ErrorCode::usage, "the output is a .csv or a .gpkg", request.output, "e.g. -o stands.csv");
+  const std::string page = fs::path(request.report).extension();
+  if (!request.report.empty() && page != ".html" && page != ".htm")
+    throw Error(ErrorCode::usage, "the report is an HTML page", request.report,
+                "e.g. --report stands.html; a browser prints it as PDF");
   if (!request.stands.empty() && request.grid != 0)
     throw Error(ErrorCode::usage, "--stands and --grid exclude each other", "", "give one of them");
   if (request.grid != 0) check_number("--grid", request.grid, "m", {.help = "", .min = 1, .max = 1e5});
@@ -52,6 +57,10 @@ StandTables read_tables(const InventoryRequest& request) {
 std::vector<std::string> stand_warnings(const std::vector<StandResult>& results, bool named_stands) {
   constexpr int kMaxWarnings = 20;
   std::vector<std::string> warnings;
+  const auto is_empty = [](const StandResult& r) { return r.figures.trees == 0; };
+  if (named_stands && results.size() > 1 && std::ranges::all_of(results, is_empty))
+    return {
+        "no stand has trees: check the CRS of the stands, and that they are of the site that the map shows"};
   int count = 0;
   for (const StandResult& r : results) {
     if (named_stands && r.figures.trees == 0 && ++count <= kMaxWarnings)

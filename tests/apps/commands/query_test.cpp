@@ -138,6 +138,18 @@ TEST_F(Query, SensorWeighsTheQuality) {
   EXPECT_EQ(query({"--sensor", "bearing_camera", "--min-quality", "0.1"}).code, 0);
 }
 
+TEST(QueryTable, SmallLengthsHaveTheirDigits) {
+  const TempFolder folder;
+  write_text(folder / "trees.csv", "uid,x,y,height,diameter\na,1,2,23.456,0.3468\nb,5,2,9.8,0.05\n");
+  ASSERT_EQ(waymark({"import", folder / "trees.csv", "-o", folder / "t.gpkg", "--type", "tree", "--map-crs",
+                     "local"})
+                .code,
+            0);
+  const std::string table = waymark({"query", folder / "t.gpkg"}).out;
+  EXPECT_THAT(table,
+              AllOf(HasSubstr(" 23.46 "), HasSubstr(" 0.347 "), HasSubstr(" 9.80 "), HasSubstr(" 0.050 ")));
+}
+
 TEST_F(Query, TableIsAligned) {
   std::istringstream lines(query({"--largest", "elevation"}).out);
   std::string header, first, second;

@@ -163,6 +163,28 @@ TEST_F(InventoryCommand, StandsInAnotherCrsAreTransformed) {
   EXPECT_EQ(cell("out.csv", 0, "trees"), "10");
 }
 
+TEST_F(InventoryCommand, StandsThatMissTheMapAreOneWarning) {
+  ASSERT_EQ(std::system(("ogr2ogr -q -a_srs EPSG:32633 '" + (folder / "far.gpkg").string() + "' '" +
+                         (folder / "stands.geojson").string() + "'")
+                            .c_str()),
+            0);
+  const Outcome reported = waymark("inventory trees.gpkg --stands far.gpkg -o out.csv");
+  ASSERT_EQ(reported.code, 0) << reported.text;
+  EXPECT_THAT(reported.text, HasSubstr("no stand has trees: check the CRS of the stands"));
+  EXPECT_THAT(reported.text, Not(HasSubstr("stand west has no trees")));
+}
+
+TEST_F(InventoryCommand, LaserPointsInPlaceOfARasterAreNamed) {
+  write("points.las", "LASF" + std::string(400, '\0'));
+  const Outcome as_raster = waymark("trees --chm points.las -o t.gpkg");
+  EXPECT_EQ(as_raster.code, 1);
+  EXPECT_THAT(as_raster.text, HasSubstr("these are laser points, no raster"));
+  EXPECT_THAT(as_raster.text, HasSubstr("--las"));
+  const Outcome as_word = waymark("trees points.las -o t.gpkg");
+  EXPECT_EQ(as_word.code, 2);
+  EXPECT_THAT(as_word.text, HasSubstr("files are given by --chm, --dsm, --dtm, --las"));
+}
+
 TEST_F(InventoryCommand, TellsWhatIsWrongWithStandsAndGoesOn) {
   write("odd.geojson", R"({"type":"FeatureCollection",
  "crs":{"type":"name","properties":{"name":"urn:ogc:def:crs:EPSG::32632"}},"features":[
@@ -198,6 +220,7 @@ TEST_F(InventoryCommand, RefusesWhatCannotBeCounted) {
     EXPECT_THAT(reported.text, HasSubstr(says));
   };
   refused("trees.gpkg --stands stands.geojson -o out.txt", 2, "the output is a .csv or a .gpkg");
+  refused("trees.gpkg --stands stands.geojson -o out.csv --report out.pdf", 2, "the report is an HTML page");
   refused("trees.gpkg --stands stands.geojson --grid 10 -o out.csv", 2, "exclude each other");
   refused("trees.gpkg --stands none.shp -o out.csv", 1, "no such file of stands");
   refused("trees.gpkg --stands trees.csv -o out.csv", 1, "no layer of polygons");
