@@ -43,8 +43,18 @@ install(FILES ${pages}/waymark.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/ve
 install(DIRECTORY python/qgis/waymark_qgis DESTINATION ${CMAKE_INSTALL_DATADIR}/qgis/python/plugins COMPONENT qgis
         FILES_MATCHING PATTERN "*.py" PATTERN metadata.txt PATTERN __pycache__ EXCLUDE)
 install(FILES ${pages}/commands.json DESTINATION ${CMAKE_INSTALL_DATADIR}/qgis/python/plugins/waymark_qgis COMPONENT qgis)
-install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} RENAME copyright COMPONENT program)
-install(FILES NOTICE CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
+# Each package has its licence where Debian wants it. The program brings the pages, and the samples of the tutorials.
+set(doc ${CMAKE_INSTALL_DATADIR}/doc)
+foreach(packed program=waymark development=libwaymark-dev qgis=qgis-plugin-waymark)
+  string(REPLACE "=" ";" packed ${packed})
+  list(GET packed 0 component)
+  list(GET packed 1 package)
+  install(FILES LICENSE DESTINATION ${doc}/${package} RENAME copyright COMPONENT ${component})
+endforeach()
+install(FILES NOTICE CHANGELOG.md CITATION.cff README.md DESTINATION ${doc}/waymark COMPONENT program)
+install(DIRECTORY docs DESTINATION ${doc}/waymark COMPONENT program
+        PATTERN Doxyfile EXCLUDE PATTERN layers.txt EXCLUDE PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY sample_data DESTINATION ${CMAKE_INSTALL_DATADIR}/waymark COMPONENT program)
 
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/install-packages --list libraries
                 OUTPUT_VARIABLE libraries OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
@@ -59,6 +69,7 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME waymark)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "python3-waymark, qgis-plugin-waymark")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libwaymark-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "${libraries}")
 set(CPACK_DEBIAN_QGIS_PACKAGE_NAME qgis-plugin-waymark)
@@ -73,6 +84,6 @@ if(WAYMARK_PYTHON)
   math(EXPR next_python "${Python3_VERSION_MINOR} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= 3.${Python3_VERSION_MINOR}), python3 (<< 3.${next_python}), python3-numpy")
-  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-geopandas")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-geopandas, waymark")
 endif()
 include(CPack)
