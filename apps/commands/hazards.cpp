@@ -74,7 +74,7 @@ class Hazards final : public Command {
                       "Write areas that are not safe as polygons, layer hazard"}
                  .offering(Offer::file),
              Argument{"--nav2", "MAP.yaml", &request_.nav2,
-                      "Write the probability for Nav2's map_server, with a PGM beside it"}
+                      "Write a map for Nav2's map_server with hazards as obstacles, a PGM beside it"}
                  .offering(Offer::file),
              Argument{"--tile-cells", "N", &request_.tile_cells, "Cells per side of a tile"}.or_else("512"),
              format_option(&format_)},

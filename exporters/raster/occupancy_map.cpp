@@ -51,9 +51,12 @@ geodb::Shape shape_of(const OGRFeature& feature, std::span<const char* const> na
 
 }  // namespace
 
-void write_occupancy_map(const fs::path& yaml, const fs::path& raster, int band) {
+void write_occupancy_map(const fs::path& yaml, const fs::path& raster, const OccupancyBands& bands,
+                         const Crs& crs) {
+  constexpr long kUnknown = 255, kLethal = 100;  // as Nav2's costmaps read mode `raw`
   const GdalMessages messages;
-  const GDALDatasetUniquePtr set = open_band(raster, band, yaml, messages);
+  const GDALDatasetUniquePtr set =
+      open_band(raster, std::max(bands.probability, bands.classes), yaml, messages);
   std::array<double, 6> t{};
   set->GetGeoTransform(t.data());
   if (!(std::abs(t[1] + t[5]) < 1e-6 * t[1]))
@@ -64,20 +67,31 @@ void write_occupancy_map(const fs::path& yaml, const fs::path& raster, int band)
   const fs::path image = fs::path(yaml).replace_extension(".pgm");
   std::string pgm = fmt::format("P5\n{} {}\n255\n", columns, rows);
   pgm.reserve(pgm.size() + static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  std::vector<float> row(static_cast<std::size_t>(columns));
-  for (int r = 0; r < rows; ++r) {
+  std::vector<float> probability(static_cast<std::size_t>(columns)), code(probability.size());
+  const auto read = [&](int band, int r, std::vector<float>& row) {
     if (set->GetRasterBand(band)->RasterIO(GF_Read, 0, r, columns, 1, row.data(), columns, 1, GDT_Float32, 0,
                                            0, nullptr) != CE_None)
       fail_output(yaml, messages.cause("the raster that it is made from cannot be read"));
-    for (const float p : row)
-      pgm.push_back(static_cast<char>(
-          std::isnan(p) ? 255 : static_cast<unsigned char>(std::lround(100 * std::clamp(p, 0.F, 1.F)))));
+  };
+  for (int r = 0; r < rows; ++r) {
+    read(bands.probability, r, probability);
+    read(bands.classes, r, code);
+    for (std::size_t i = 0; i < code.size(); ++i) {
+      const float p = probability[i];
+      const auto is = [&](int one) { return code[i] == static_cast<float>(one); };
+      const long cell = is(bands.lethal_class) ? kLethal
+                        : is(bands.unknown_class) || std::isnan(p)
+                            ? kUnknown
+                            : std::min(std::lround(100 * p), kLethal - 1);
+      pgm.push_back(static_cast<char>(cell));
+    }
   }
   write_file(image, pgm);
-  write_file(yaml,
-             fmt::format("image: {}\nmode: raw\nresolution: {:.9g}\norigin: [{:.9g}, {:.9g}, 0]\nnegate: 0\n"
-                         "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
-                         image.filename().string(), t[1], t[0], t[3] + rows * t[5]));
+  write_file(yaml, fmt::format(
+                       "# Metres of {}. 100: hazard, 0 to 99: probability of one in per cent, 255: unknown.\n"
+                       "image: {}\nmode: raw\nresolution: {:.12g}\norigin: [{:.12g}, {:.12g}, 0]\nnegate: 0\n"
+                       "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
+                       crs.id(), image.filename().string(), t[1], t[0], t[3] + rows * t[5]));
 }
 
 void write_class_polygons(const fs::path& map, const std::string& layer_name, const fs::path& raster,

@@ -236,7 +236,9 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   if (!request.polygons.empty())
     exporters::write_class_polygons(request.polygons, "hazard", request.output, bands_count, kClassNames,
                                     grid.where.crs);
-  if (!request.nav2.empty()) exporters::write_occupancy_map(request.nav2, request.output, bands_count - 1);
+  if (!request.nav2.empty())
+    exporters::write_occupancy_map(request.nav2, request.output,
+                                   {.probability = bands_count - 1, .classes = bands_count}, grid.where.crs);
   const auto total = static_cast<double>(grid.cells());
   std::string text = fmt::format("{}: {} x {} cells for {}, {} objects\n", request.output, grid.columns,
                                  grid.rows, vehicle.name, result.objects);

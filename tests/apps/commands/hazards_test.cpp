@@ -59,8 +59,9 @@ TEST_F(Hazards, WallIsAHazardAndTheVoidUnknown) {
   const std::string cells = pgm.substr(pgm.size() - 80 * 60);
   EXPECT_EQ(cells[30 * 80 + 39], 100);
   EXPECT_EQ(static_cast<unsigned char>(cells[0]), 255);
-  EXPECT_THAT(text_of(folder_ / "h.yaml"), AllOf(HasSubstr("mode: raw"), HasSubstr("resolution: 0.5"),
-                                                 HasSubstr("origin: [500000, 5199970, 0]")));
+  EXPECT_THAT(text_of(folder_ / "h.yaml"),
+              AllOf(HasSubstr("# Metres of EPSG:32632"), HasSubstr("mode: raw"), HasSubstr("resolution: 0.5"),
+                    HasSubstr("origin: [500000, 5199970, 0]")));
   GDALAllRegister();
   const GDALDatasetUniquePtr set(GDALDataset::Open((folder_ / "h.gpkg").c_str(), GDAL_OF_VECTOR));
   ASSERT_TRUE(set);
@@ -75,17 +76,41 @@ TEST_F(Hazards, WallIsAHazardAndTheVoidUnknown) {
   EXPECT_NEAR(area, expected, 1e-6);
 }
 
+TEST_F(Hazards, OfTheMapForNav2HazardsAloneAreObstacles) {
+  const Outcome made = waymark(
+      {"hazards", wall(), "-o", folder_ / "h.tif", "--height-sd", "0.2", "--nav2", folder_ / "h.yaml"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const std::vector<float> classes = band(folder_ / "h.tif", 11);
+  const std::string pgm = text_of(folder_ / "h.pgm"), cells = pgm.substr(pgm.size() - 80 * 60);
+  const std::vector<float> probability = band(folder_ / "h.tif", 10);
+  std::size_t uncertain = 0, doubtful_hazards = 0;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    // Costmaps of Nav2 take only 100 for an obstacle (nav2_costmap_2d, lethal_cost_threshold).
+    ASSERT_EQ(cells[i] == 100, classes[i] == 2) << i;
+    if (classes[i] < 2) {
+      ASSERT_EQ(cells[i], std::lround(100 * probability[i])) << i;
+    }
+    uncertain += classes[i] == 1, doubtful_hazards += classes[i] == 2 && probability[i] < 0.99;
+  }
+  EXPECT_GT(uncertain, 0u);
+  EXPECT_GT(doubtful_hazards, 0u);
+}
+
 TEST_F(Hazards, OutsideTheAreaOfInterestIsUnknown) {
   write_text(folder_ / "west.geojson", R"({"type": "FeatureCollection",
     "crs": {"type": "name", "properties": {"name": "EPSG:32632"}}, "features": [{"type": "Feature", "properties": {},
     "geometry": {"type": "Polygon", "coordinates":
     [[[499000, 5190000], [500010, 5190000], [500010, 5210000], [499000, 5210000], [499000, 5190000]]]}}]})");
   ASSERT_EQ(waymark({"hazards", wall(), "-o", folder_ / "all.tif"}).code, 0);
-  const Outcome made =
-      waymark({"hazards", wall(), "-o", folder_ / "west.tif", "--aoi", folder_ / "west.geojson"});
+  const Outcome made = waymark({"hazards", wall(), "-o", folder_ / "west.tif", "--aoi",
+                                folder_ / "west.geojson", "--nav2", folder_ / "west.yaml"});
   ASSERT_EQ(made.code, 0) << made.err;
   const std::vector<float> all = band(folder_ / "all.tif", 11), west = band(folder_ / "west.tif", 11);
-  for (std::size_t i = 0; i < all.size(); ++i) ASSERT_EQ(west[i], i % 80 < 20 ? all[i] : 3) << i;
+  const std::string pgm = text_of(folder_ / "west.pgm");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    ASSERT_EQ(west[i], i % 80 < 20 ? all[i] : 3) << i;
+    ASSERT_EQ(static_cast<unsigned char>(pgm[pgm.size() - 80 * 60 + i]) == 255, west[i] == 3) << i;
+  }
 }
 
 TEST_F(Hazards, ADemWithoutACrsIsTakenWithOne) {
