@@ -8,7 +8,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <cstdlib>
 #include <sstream>
+#include <string_view>
 
 #include "apps/parse.hpp"
 #include "apps/session.hpp"
@@ -19,11 +22,19 @@ namespace {
 
 constexpr std::size_t kMaxWidth = 100, kMinWidth = 60, kTextColumn = 26;
 
-/// Returns the columns for text: those of the terminal, if standard output is one.
+/// Returns the columns for text: the environment's COLUMNS, else those of the terminal. In `waymark --help |
+/// less` only standard error is one.
 std::size_t width() {
-  winsize size{};
-  const bool is_known = ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0;
-  return is_known ? std::clamp<std::size_t>(size.ws_col, kMinWidth, kMaxWidth) : kMaxWidth;
+  std::size_t columns = 0;
+  if (const char* asked = std::getenv("COLUMNS")) {
+    const std::string_view digits(asked);
+    std::from_chars(digits.data(), digits.data() + digits.size(), columns);
+  }
+  for (const int file : {STDOUT_FILENO, STDERR_FILENO}) {
+    winsize size{};
+    if (columns == 0 && ioctl(file, TIOCGWINSZ, &size) == 0) columns = size.ws_col;
+  }
+  return columns > 0 ? std::clamp(columns, kMinWidth, kMaxWidth) : kMaxWidth;
 }
 
 /// Wraps paragraphs at the width of the terminal and indents every line by `indent` blanks.

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
+#include <string>
 
 #include "program.hpp"
 
@@ -128,6 +131,20 @@ TEST(CommandLine, AWordTooManyIsNamed) {
   EXPECT_EQ(said.err,
             "error: waymark validate has no use for the word 'b.gpkg'\n  `waymark validate --help` shows "
             "what it takes\n");
+}
+
+TEST(CommandLine, HelpFitsTheColumnsOfTheEnvironment) {
+  const auto longest = [](const std::string& columns) {
+    const Outcome said = bash(columns + " $WAYMARK localize --help");
+    std::istringstream lines(said.out.substr(0, said.out.find("Examples:")));
+    std::size_t most = 0;
+    for (std::string line; std::getline(lines, line);) most = std::max(most, line.size());
+    return most;
+  };
+  EXPECT_LE(longest("COLUMNS=80"), 80u);
+  EXPECT_GT(longest("COLUMNS=80"), 70u);
+  EXPECT_LT(longest("COLUMNS=7"), 70u);  // 60, but for a long word
+  EXPECT_GT(longest("COLUMNS=none"), 90u);
 }
 
 TEST(CommandLine, AMissingArgumentIsNamed) {
