@@ -20,8 +20,8 @@ void register_type_crater(TypeRegistry& types) {
       .body = {"radius"},
       .identification_reach = 1000,
       // Often missed; with a DEM all observations share its evidence
-      // (docs/evaluation/2026-11-22-existence-weights.md).
-      .existence = {.further_detection = 0.2, .missed_image = 0.15},
+      // (docs/evaluation/2026-11-27-craters-on-landings.md).
+      .existence = {.further_detection = 0.1, .missed_image = 0.1, .min_probability = 0.5},
       .drawn_as = Solid::bowl,
       .colour = "#2f6fb0",
       .label_feature = "",

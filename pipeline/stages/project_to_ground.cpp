@@ -5,7 +5,7 @@
 #include "geo/plane_dem.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
-#include "pipeline/fusion/cleaning/rim_closure.hpp"
+#include "pipeline/fusion/cleaning/rim_evidence.hpp"
 #include "pipeline/fusion/projection/dem_registration.hpp"
 #include "pipeline/fusion/projection/dem_shift.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"

@@ -32,7 +32,7 @@ struct ValueLandmarks {
               .max = 1000,
               .formerly = "least_diameter"});
       option("keep_improbable", keep_improbable,
-             {.help = "Keep landmarks that are probably false (rocks below 0.5)"});
+             {.help = "Keep landmarks that are probably false (rocks and craters below 0.5)"});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};

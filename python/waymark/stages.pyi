@@ -237,7 +237,7 @@ def value_landmarks(*, covers: str = ..., spread: str = ..., min_diameter: float
     covers: Rule for images that cover a landmark: sound (complete, not occluded, at least as sharp as the coarsest that detected it) or paper (eq. 4: footprint and its area) (one of sound, paper)
     spread: Confidence from spread: sound (by scale, absent for one observation) or paper (eqs. 6-7 literally) (one of sound, paper)
     min_diameter: Smallest landmark that an image can detect, in pixels (at least 0, at most 1000)
-    keep_improbable: Keep landmarks that are probably false (rocks below 0.5)"""
+    keep_improbable: Keep landmarks that are probably false (rocks and craters below 0.5)"""
     ...
 
 def value_surveys() -> dict[str, Any]:

@@ -196,20 +196,21 @@ TEST(Existence, RocksAreDoubtedMoreThanCraters) {
 // Further images of a crater add little evidence, and a missed detection counts little against it.
 TEST(Existence, CratersAreSeenThroughTheSameDemInEveryImage) {
   const double three[] = {0.9, 0.8, 0.5};
-  const double logit = std::log(9) + 0.2 * std::log(4) - 2 * 0.15;
+  const double logit = std::log(9) + 0.1 * std::log(4) - 2 * 0.1;
   EXPECT_NEAR(existence_probability(three, 2, rules("crater")), 1 / (1 + std::exp(-logit)), 1e-12);
 }
 
 TEST(RemoveImprobable, KeepsTheEvidenceAndSaysWhy) {
-  std::vector<Landmark> all(3);
-  for (std::size_t i = 0; i < 3; ++i)
+  std::vector<Landmark> all(4);
+  for (std::size_t i = 0; i < 4; ++i)
     all[i].type = kTypes.id("rock"), all[i].uid = std::string(1, char('a' + i));
-  all[0].confidence = 0.49, all[1].confidence = 0.5, all[2].confidence = 0.1;
-  all[2].type = kTypes.id("crater");
+  all[0].confidence = 0.49, all[1].confidence = 0.5, all[2].confidence = 0.1, all[3].confidence = 0.49;
+  all[2].type = kTypes.id("mountain_top");
+  all[3].type = kTypes.id("crater");
   std::vector<Observation> seen{rock(0, 0, 1), rock(1, 0, 1), rock(2, 0, 1), rock(3, 0, 1)};
   seen[0].landmark_uid = "a", seen[1].landmark_uid = "b", seen[2].landmark_uid = "c";
   seen[3].rejected = "too tall";
-  EXPECT_EQ(remove_improbable(all, seen, kTypes), 1);
+  EXPECT_EQ(remove_improbable(all, seen, kTypes), 2);
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].uid, "b");
   EXPECT_EQ(all[1].uid, "c");
