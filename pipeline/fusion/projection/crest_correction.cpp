@@ -75,6 +75,14 @@ double unevenness(const RimHeights& heights, const Profile& weights) {
   return variance;
 }
 
+// Depth between the highest point near the crest and the floor, in diameters of the worn crest.
+double profile_depth(const DegradationProfiles& worn, const DegradationProfiles::State& state, double blur) {
+  double crest = 0;
+  for (const double r : {0.9, 0.94, 0.98, 1.02, 1.06, 1.1})
+    crest = std::max(crest, worn.height(blur, r * state.crest));
+  return (crest - worn.height(blur, 0.06 * state.crest)) / state.crest;
+}
+
 }  // namespace
 
 DegradationProfiles::DegradationProfiles() {
@@ -98,6 +106,21 @@ double DegradationProfiles::height(double blur, double r) const {
   const auto i = static_cast<std::size_t>(after - blurs_.begin());
   const double part = std::clamp((blur - blurs_[i - 1]) / (blurs_[i] - blurs_[i - 1]), 0.0, 1.0);
   return std::lerp(sampled(heights_[i - 1], r), sampled(heights_[i], r), part);
+}
+
+double depth_growth(double shown, double cells) {
+  if (!(shown > 0)) return 1;
+  const DegradationProfiles& worn = DegradationProfiles::instance();
+  double before = 0, growth_before = 1;  // of the next deeper state
+  for (const auto& state : worn.states()) {
+    const double cell = 2 * state.crest / std::max(cells, 1.0);  // radii of the fresh crater
+    const double seen = profile_depth(worn, state, std::hypot(state.blur, kCellBlur * cell));
+    const double growth = std::max(1.0, profile_depth(worn, state, state.blur) / seen);
+    if (seen <= shown)
+      return before > seen ? std::lerp(growth, growth_before, (shown - seen) / (before - seen)) : growth;
+    before = seen, growth_before = growth;
+  }
+  return growth_before;
 }
 
 std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const GroundOutline& outline,

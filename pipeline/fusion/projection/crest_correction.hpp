@@ -34,6 +34,11 @@ class DegradationProfiles {
   std::vector<State> states_;
 };
 
+/// Returns true over shown depth of a crater `cells` of the terrain wide (at least 1) that shows a depth /
+/// diameter of `shown`. Cells average over crest and floor, which takes a tenth of a fresh crater 5 cells
+/// wide. The profile is that of DegradationProfiles with this shown depth; 1 for no depth.
+double depth_growth(double shown, double cells);
+
 /// Distance of a crater's crest outside its outline in an image.
 struct CrestCorrection {
   double growth = 0;     ///< ln(crest / outline), >= 0

@@ -207,7 +207,8 @@ Observation project_detection(const Detection& detection, const ImageView& image
   } else if (rules.heights_known) {
     if (const auto depth = bowl_depth(terrain, *outline)) {
       z = depth->rim_height;
-      set(observation, type, "depth", depth->depth, std::max(depth->depth_sd, 1e-6));
+      const double growth = depth_growth(depth->depth / diameter, diameter / cell);
+      set(observation, type, "depth", growth * depth->depth, std::max(growth * depth->depth_sd, 1e-6));
     }
   }
   observation.position.xyz << outline->centre.head<2>(), z;

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "pipeline/fusion/projection/detection_projection.hpp"
 
@@ -69,6 +71,67 @@ TEST(DegradationProfiles, WearMakesShallowAndSpreadsTheCrest) {
   }
   // docs/methods/craters.md: brightness makes the most degraded craters at least a quarter too narrow.
   EXPECT_NEAR(state_of_depth(0.1).crest_over_edge, 0.3, 0.05);
+}
+
+// Cells of 1 m hold the mean of 9 x 9 heights; the crater is in the middle, `offset` from a cell's centre.
+Terrain averaged_ground(double crest_diameter, const DegradationProfiles::State& state, double offset) {
+  Grid<float> heights(81, 81);
+  const double fresh = crest_diameter / 2 / state.crest;
+  for (std::int64_t r = 0; r < 81; ++r)
+    for (std::int64_t c = 0; c < 81; ++c) {
+      double sum = 0;
+      for (int i = 0; i < 81; ++i) {
+        const double x = double(c - 40) + (i % 9 - 4) / 9.0 + offset;
+        const double y = double(40 - r) + (i / 9 - 4) / 9.0 - offset;
+        sum += 2 * fresh * DegradationProfiles::instance().height(state.blur, std::hypot(x, y) / fresh);
+      }
+      heights(c, r) = static_cast<float>(sum / 81);
+    }
+  return {std::move(heights), -40 + offset, 40 - offset, 1, 1};
+}
+
+// Median over azimuths of the highest point near the crest, minus the floor, in diameters.
+double shown_depth(const Terrain& terrain, double diameter) {
+  std::vector<double> crests;
+  double floor = 0;
+  for (int k = 0; k < 36; ++k) {
+    const double t = 2 * std::numbers::pi * k / 36;
+    const auto height = [&](double fraction) {
+      const double r = fraction * diameter / 2;
+      return terrain.height(r * std::cos(t), r * std::sin(t)).value();
+    };
+    double crest = -1e9;
+    for (const double fraction : {0.9, 0.94, 0.98, 1.02, 1.06, 1.1})
+      crest = std::max(crest, height(fraction));
+    crests.push_back(crest);
+    floor += height(0.06) / 36;
+  }
+  std::ranges::nth_element(crests, crests.begin() + 18);
+  return (crests[18] - floor) / diameter;
+}
+
+// Bilinear heights smooth least at a cell's centre and most between cells, so 6 % at 5.5 cells are left.
+TEST(DepthGrowth, GivesBackTheDepthThatCellsTake) {
+  for (const double depth : {0.19, 0.15, 0.1, 0.06})
+    for (const double diameter : {5.5, 8.0, 16.0}) {
+      const auto state = state_of_depth(depth);
+      double before = 0, after = 0;  // mean fraction of the true depth
+      for (const double offset : {0.0, 0.25, 0.5}) {
+        const double shown = shown_depth(averaged_ground(diameter, state, offset), diameter);
+        before += shown / state.depth / 3;
+        after += shown * depth_growth(shown, diameter) / state.depth / 3;
+      }
+      EXPECT_NEAR(after, 1, diameter < 6 ? 0.06 : 0.03) << depth << ", " << diameter << " m";
+      EXPECT_LT(std::abs(after - 1), std::abs(before - 1) / 2) << depth << ", " << diameter << " m";
+    }
+}
+
+TEST(DepthGrowth, IsOneWhereNothingIsTakenOrShown) {
+  EXPECT_EQ(depth_growth(0, 8), 1);
+  EXPECT_EQ(depth_growth(-0.1, 8), 1);
+  EXPECT_EQ(depth_growth(std::nan(""), 8), 1);
+  EXPECT_NEAR(depth_growth(0.1, 1000), 1, 0.01);
+  EXPECT_LT(depth_growth(0.4, 5), 1.25);  // deeper than any crater
 }
 
 TEST(CrestCorrection, IsFoundByTheDepthTheHeightsShow) {
