@@ -46,6 +46,10 @@ bool LogReplay::take(const LogEvent& event) {
   return true;
 }
 
+void LogReplay::forget_rows() {
+  if (track_.rows.size() > 1) track_.rows.erase(track_.rows.begin(), track_.rows.end() - 1);
+}
+
 // Applies the speeds of the last reading until `t`, but no longer than max_hold. Then the robot
 // stands, and only the uncertainty of time grows.
 void LogReplay::advance(double t) {

@@ -44,6 +44,8 @@ class LogReplay {
   bool take(const LogEvent& event);
 
   const Track& track() const { return track_; }
+  /// Removes all rows of the track but the last, of a robot that drives for days. Counts stay.
+  void forget_rows();
   /// Returns the sightings that were taken last, and a match for each.
   const SightingSet& seen() const { return seen_; }
   const std::vector<Match>& matches() const { return matches_; }

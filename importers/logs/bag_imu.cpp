@@ -10,12 +10,6 @@
 #include "importers/logs/gyro_yaw.hpp"
 
 namespace waymark::importers {
-namespace {
-
-constexpr double kGyroBias = 0.005;    // rad/s, of small gyros; it is estimated with the pose
-constexpr double kGyroScaleSd = 0.01;  // relative error of their rate
-
-}  // namespace
 
 void add_turn_rates(localization::RobotLog& log, const std::string& topic,
                     const std::vector<BagImu>& readings, const Eigen::Matrix3d& body_from_imu,
@@ -35,11 +29,7 @@ void add_turn_rates(localization::RobotLog& log, const std::string& topic,
   std::string remark =
       fmt::format("the odometry has no yaw: {} angular velocities of {} give it", rates.size(), topic);
   if (const double variance = yaw_variance_per_second(rates); variance > 0) {
-    log.odometry.emplace();
-    log.odometry->yaw_per_metre = 0;
-    log.odometry->yaw_per_radian = kGyroScaleSd * kGyroScaleSd;
-    log.odometry->yaw_per_second = variance;
-    log.drift.yaw_rate_sd = kGyroBias;
+    use_gyro_noise(log, variance);
   } else {
     remark += "; they state no covariance";
   }

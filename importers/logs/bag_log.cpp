@@ -16,22 +16,14 @@
 #include "importers/logs/bag_messages.hpp"
 #include "importers/logs/bag_topics.hpp"
 #include "importers/logs/import_log.hpp"
-#include "importers/logs/level_pose.hpp"
 #include "importers/logs/odometry_steps.hpp"
+#include "importers/logs/robot_readings.hpp"
 #include "importers/logs/zstd.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
 
 namespace waymark::importers {
 namespace {
-
-constexpr double kMaxTilt = 0.2;  // rad: a level scan 10 m away is then 2 m higher or lower
-
-// Seen from above, the beams of a scanner that hangs upside down run from right to left in the other order.
-void turn_over(localization::LaserScan& scan) {
-  scan.first_angle = -(scan.first_angle + scan.angle_step * static_cast<double>(scan.ranges.size() - 1));
-  std::ranges::reverse(scan.ranges);
-}
 
 /// Point clouds of one topic that are read in a second pass, as they do not fit into memory together.
 struct ChosenClouds {
@@ -104,7 +96,7 @@ class BagReader {
     const std::string base = body();
     const auto scans =
         largest(topics_.scans, "scans are", [](const ScanTopic& topic) { return topic.scans.size(); });
-    if (scans != topics_.scans.end()) mount(scans->second, base);
+    if (scans != topics_.scans.end()) add_scans(scans->second, base);
     add_fixes(base);
     std::vector<localization::StampedPose> poses;
     const auto odometry = chosen_odometry();
@@ -195,18 +187,15 @@ class BagReader {
     return body_from_sensor.value_or(Eigen::Isometry3d::Identity());
   }
 
-  void mount(ScanTopic& topic, const std::string& body) {
+  void add_scans(ScanTopic& topic, const std::string& body) {
     const Eigen::Isometry3d place = place_of(topic.frame, body);
-    if (!(std::abs(place(2, 2)) >= std::cos(kMaxTilt)))
+    if (!is_level(place))
       throw Error(ErrorCode::input,
                   fmt::format("the scanner {} is tilted by {:.0f} degrees", topic.frame,
                               std::acos(std::abs(place(2, 2))) * 180 / std::numbers::pi),
                   path_.string(), "scans of level scanners are read; --topic names another");
-    for (localization::LogEvent& event : topic.scans) {
-      auto& scan = std::get<localization::LaserScan>(event.what);
-      scan.robot_from_sensor = level_pose(place);
-      if (place(2, 2) < 0) turn_over(scan);
-    }
+    for (localization::LogEvent& event : topic.scans)
+      mount(std::get<localization::LaserScan>(event.what), place);
     std::ranges::move(topic.scans, std::back_inserter(log_.events));
   }
 
@@ -219,16 +208,11 @@ class BagReader {
       log_.remarks.push_back(fmt::format("{} messages of {} are without a satellite fix and are skipped",
                                          topic.without_fix, chosen->first));
     if (topic.fixes.empty()) return;
-    // A fix is the place of the antenna, and a heading to move it by is not certain: its distance from the
-    // robot's middle is an error.
     const double arm = place_of(topic.frame, body).translation().head<2>().norm();
     std::size_t unstated = 0;
     for (const BagFix& fix : topic.fixes) {
-      constexpr double kUnstatedSd = 3;  // m, as of a record `gnss` without `sd`
       unstated += !(fix.sd > 0);
-      const double sd = fix.sd > 0 ? fix.sd : kUnstatedSd;
-      log_.events.push_back(
-          {fix.at.t, localization::GnssFix{{fix.longitude, fix.latitude}, std::hypot(sd, arm)}});
+      log_.events.push_back({fix.at.t, fix_of_antenna(fix.longitude, fix.latitude, fix.sd, arm)});
     }
     log_.fix_crs = "EPSG:4326";
     std::string remark =

@@ -3,15 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <array>
 #include <cmath>
 #include <stdexcept>
 
+#include "importers/logs/robot_readings.hpp"
+
 namespace waymark::importers {
 namespace {
-
-using Covariance3 = std::array<double, 9>;  // row-major
 
 template <std::size_t Count>
 std::array<double, Count> numbers(CdrReader& in) {
@@ -80,7 +79,6 @@ BagImu read_imu(const BagMessage& message) {
 
 BagFix read_fix(const BagMessage& message) {
   constexpr std::int8_t kNoFix = -1;
-  constexpr std::uint8_t kUnknown = 0, kApproximated = 1, kDiagonal = 2, kKnown = 3;
   CdrReader in(message.bytes);
   BagFix fix{.at = read_stamp(in, message.received)};
   const auto status = in.number<std::int8_t>();
@@ -94,14 +92,7 @@ BagFix read_fix(const BagMessage& message) {
     throw std::runtime_error(
         fmt::format("a position is no latitude and longitude: {}, {}", fix.latitude, fix.longitude));
   fix.is_fix = true;
-  if (type > kKnown) throw std::runtime_error("there is no type of covariance " + std::to_string(type));
-  if (type == kUnknown) return fix;
-  const double aside = type == kKnown ? covariance[1] : 0;
-  static_assert(kApproximated < kKnown && kDiagonal < kKnown);  // of both only the diagonal counts
-  Eigen::Matrix2d horizontal;
-  horizontal << covariance[0], aside, aside, covariance[4];
-  if (!horizontal.allFinite()) throw std::runtime_error("the covariance of a position is not finite");
-  fix.sd = std::sqrt(stated(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(horizontal).eigenvalues()[1]));
+  fix.sd = horizontal_sd(covariance, type);
   return fix;
 }
 

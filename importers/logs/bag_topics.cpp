@@ -9,7 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "importers/logs/level_pose.hpp"
+#include "importers/logs/robot_readings.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -33,17 +33,10 @@ void add_scan(BagTopics& topics, const BagMessage& message) {
   in.number<float>(), in.number<float>();  // time between beams and between scans
   const float min_range = in.number<float>(), max_range = in.number<float>();
   std::vector<float> ranges = in.floats();
-  if (!(std::isfinite(first) && std::abs(step) > 0 && std::isfinite(step) && max_range > 0) || ranges.empty())
-    throw std::runtime_error("a scan has no beams, or its angles or ranges are not finite");
-  for (float& r : ranges)
-    if (!(r >= min_range)) r = 0;
+  localization::LaserScan scan = laser_scan(first, step, min_range, max_range, std::move(ranges));
   ScanTopic& topic = topics.scans[std::string(message.topic)];
   if (topic.scans.empty()) topic.frame = std::move(at.frame);
-  topic.scans.push_back({at.t, localization::LaserScan{.robot_from_sensor = {},
-                                                       .first_angle = first,
-                                                       .angle_step = step,
-                                                       .ranges = std::move(ranges),
-                                                       .max_range = max_range}});
+  topic.scans.push_back({at.t, std::move(scan)});
 }
 
 void add_frames(BagTopics& topics, const BagMessage& message) {

@@ -60,4 +60,13 @@ double yaw_variance_per_second(std::span<const TurnRate> rates) {
   return sum / count * (rates.back().t - rates.front().t) / (count - 1);
 }
 
+void use_gyro_noise(localization::RobotLog& log, double variance_per_second) {
+  constexpr double kBias = 0.005, kScaleSd = 0.01;
+  log.odometry.emplace();
+  log.odometry->yaw_per_metre = 0;
+  log.odometry->yaw_per_radian = kScaleSd * kScaleSd;
+  log.odometry->yaw_per_second = variance_per_second;
+  log.drift.yaw_rate_sd = kBias;
+}
+
 }  // namespace waymark::importers

@@ -22,4 +22,8 @@ std::vector<localization::StampedPose> with_yaw_of_gyro(std::vector<localization
 /// mean distance in time; 0 if they state none.
 double yaw_variance_per_second(std::span<const TurnRate> rates);
 
+/// Gives a log the odometry noise of a robot whose yaw is that of a small gyro: its variance per second,
+/// rad^2/s, a scale error of 1 % and a bias of 0.005 rad/s that is estimated with the pose.
+void use_gyro_noise(localization::RobotLog& log, double variance_per_second);
+
 }  // namespace waymark::importers

@@ -5,6 +5,7 @@
 #include <waymark/localization.hpp>
 #include <waymark/map.hpp>
 #include <waymark/mapping.hpp>
+#include <waymark/robot.hpp>
 #include <waymark/testbed.hpp>
 
 /// \mainpage
@@ -14,6 +15,7 @@
 /// - \ref detection_header
 /// - \ref forest_header
 /// - \ref localization_header
+/// - \ref robot_header
 /// - \ref testbed_header
 ///
 /// Whatever these headers do not include is private and not installed.

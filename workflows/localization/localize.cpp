@@ -178,15 +178,6 @@ void check_reach(const localization::RobotLog& log, const localization::Identifi
       bearings, all, request.log));
 }
 
-/// Gives the settings the odometry noise that the log states, and the log what the request sets.
-void share_odometry_noise(const LocalizeRequest& request, const DescribeOptions& options,
-                          localization::ReplayOptions& play, localization::RobotLog& log) {
-  if (log.odometry) play.odometry = *log.odometry;
-  play.drift = log.drift;
-  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
-  log.odometry = play.odometry, log.drift = play.drift;
-}
-
 void write_track(const LocalizeRequest& request, const localization::Track& track, const RobotMap& map) {
   exporters::TrackOutput form{
       .frame = request.in_map_crs ? &map.frame : nullptr, .crs = &map.crs(), .timing = request.timing};

@@ -87,6 +87,14 @@ LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& m
   return settings;
 }
 
+void share_odometry_noise(const LocalizeRequest& request, const DescribeOptions& options,
+                          localization::ReplayOptions& play, localization::RobotLog& log) {
+  if (log.odometry) play.odometry = *log.odometry;
+  play.drift = log.drift;
+  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
+  log.odometry = play.odometry, log.drift = play.drift;
+}
+
 void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play) {
   play.frames.survey_sd = map.survey_sd;
 }

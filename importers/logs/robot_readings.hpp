@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Geometry>
+#include <array>
+#include <vector>
+#include "localization/absolute_fix.hpp"
+#include "localization/laser_scan.hpp"
+namespace waymark::importers {
+
+// Readings of a log from what messages of ROS state, be they of a recording or of a driving robot.
+
+/// Covariance of three quantities, row-major. A first element of -1 says that they are not measured.
+using Covariance3 = std::array<double, 9>;
+
+/// Returns position and yaw of a pose as seen from above.
+localization::Pose2 level_pose(const Eigen::Isometry3d& pose);
+
+/// Returns a scan of a sensor in the middle of the robot; ranges below `min_range` are no return. Throws
+/// std::runtime_error if it has no beams, or if angles or ranges cannot be.
+localization::LaserScan laser_scan(double first_angle, double angle_step, float min_range, float max_range,
+                                   std::vector<float> ranges);
+
+/// Returns whether the scans of a sensor are level, within 0.2 rad. It may hang upside down.
+bool is_level(const Eigen::Isometry3d& robot_from_sensor);
+
+/// Gives a scan the pose of its level sensor. Of one that hangs upside down the order of beams is turned.
+void mount(localization::LaserScan& scan, const Eigen::Isometry3d& robot_from_sensor);
+
+/// Returns the standard deviation, m, of the least certain horizontal direction of a satellite fix; 0 if it
+/// is not stated. `type` is position_covariance_type of NavSatFix. Throws std::runtime_error.
+double horizontal_sd(const Covariance3& covariance, int type);
+
+/// Returns a fix in degrees. An `sd` of 0 becomes 3 m. The distance of the antenna from the robot's middle,
+/// `arm`, m, is an error, since a heading to move the fix by is not certain.
+localization::GnssFix fix_of_antenna(double longitude, double latitude, double sd, double arm);
+
+}  // namespace waymark::importers
