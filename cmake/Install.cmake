@@ -54,6 +54,7 @@ endforeach()
 install(FILES NOTICE CHANGELOG.md CITATION.cff README.md DESTINATION ${doc}/waymark COMPONENT program)
 install(DIRECTORY docs DESTINATION ${doc}/waymark COMPONENT program
         PATTERN Doxyfile EXCLUDE PATTERN layers.txt EXCLUDE PATTERN __pycache__ EXCLUDE)
+install(DIRECTORY ros DESTINATION ${CMAKE_INSTALL_DATADIR}/waymark COMPONENT development)
 install(DIRECTORY sample_data DESTINATION ${CMAKE_INSTALL_DATADIR}/waymark COMPONENT program)
 
 execute_process(COMMAND ${PROJECT_SOURCE_DIR}/scripts/install-packages --list libraries
