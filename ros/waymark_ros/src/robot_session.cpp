@@ -204,7 +204,7 @@ PoseReports RobotSession::take(const Imu& message) {
   if (!place) return {};
   const bool has_rate = message.rate_covariance[0] != -1,
              has_heading = message.orientation_covariance[0] != -1;
-  const auto oriented = checked({.at = {}, .turn = message.orientation});
+  const auto oriented = checked(Pose{.turn = message.orientation});
   if ((has_rate && !message.rate.allFinite()) || (has_heading && !oriented))
     return drop("an inertial reading is not finite, or its orientation is none"), PoseReports{};
   std::optional<Reading> heading;
