@@ -14,63 +14,99 @@ namespace {
 
 constexpr double kMinRange = 0.1;  // m: nearer, a bearing has no direction
 
+double half_view_of(const SensorCoverage& sensor) {
+  return sensor.view / 2 * kRadiansPerDegree;
+}
+
+bool in_view(double azimuth, double yaw, double half_view) {
+  return !(std::abs(localization::wrap_angle(azimuth - yaw)) > half_view);
+}
+
+/// Returns the information per metre driven of a landmark in the direction `to`, r metres away.
+Symmetric3 information_of(const localization::MapLandmark& landmark, const Eigen::Vector2d& to, double r,
+                          const LandmarkSensing& sensing) {
+  const SensorCoverage& sensor = sensing.coverage;
+  const double correlation = sensing.correlation_per_range * sensor.range;
+  const Eigen::Vector2d u = to / r, w(-u.y(), u.x());
+  const Eigen::Matrix2d& s = landmark.covariance;
+  const double rate = sensing.sightings_per_metre, bearing_sd = sensor.bearing_sd * kRadiansPerDegree;
+  const double bearing = bearing_sd * bearing_sd / rate + 2 * correlation * w.dot(s * w) / (r * r);
+  // The bearing's row of the measurement matrix is (-w / r, -1), that of the range (-u, 0).
+  Symmetric3 j;
+  const double detection = detection_probability(sensor, r, landmark.diameter);
+  add(j, {w.x() * w.x() / (r * r), w.x() * w.y() / (r * r), w.y() * w.y() / (r * r), w.x() / r, w.y() / r, 1},
+      detection / bearing);
+  if (sensor.range_sd > 0) {
+    const double range = sensor.range_sd * sensor.range_sd / rate + 2 * correlation * u.dot(s * u);
+    add(j, {u.x() * u.x(), u.x() * u.y(), u.y() * u.y(), 0, 0, 0}, detection / range);
+  }
+  return j;
+}
+
+/// Adds a landmark to what is seen at a pose.
+void add(Information& sum, const localization::MapLandmark& landmark, const Symmetric3& information) {
+  add(sum.rate, information, landmark.quality);
+  ++sum.landmarks;
+  sum.quality += landmark.paper_quality;
+}
+
 }  // namespace
 
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                        const LandmarkSensing& sensing, const VisitInformation& visit) {
-  const SensorCoverage& sensor = sensing.coverage;
-  const double half_view = sensor.view / 2 * kRadiansPerDegree;
-  const double correlation = sensing.correlation_per_range * sensor.range;
-  map.near(pose.at(), sensor.range, [&](std::uint32_t i) {
-    const localization::MapLandmark& landmark = map[i];
-    const Eigen::Vector2d to = landmark.at - pose.at();
+  const double half_view = half_view_of(sensing.coverage);
+  map.near(pose.at(), sensing.coverage.range, [&](std::uint32_t i) {
+    const Eigen::Vector2d to = map[i].at - pose.at();
     const double r = to.norm();
     if (!(r > kMinRange)) return;
-    if (half_view < std::numbers::pi &&
-        std::abs(localization::wrap_angle(std::atan2(to.y(), to.x()) - pose.yaw)) > half_view)
-      return;
-    if (sensing.visible && !sensing.visible(pose, landmark.at)) return;
-    const Eigen::Vector2d u = to / r, w(-u.y(), u.x());
-    const Eigen::Matrix2d& s = landmark.covariance;
-    const double rate = sensing.sightings_per_metre, bearing_sd = sensor.bearing_sd * kRadiansPerDegree;
-    const double bearing = bearing_sd * bearing_sd / rate + 2 * correlation * w.dot(s * w) / (r * r);
-    // The bearing's row of the measurement matrix is (-w / r, -1), that of the range (-u, 0).
-    Symmetric3 j;
-    const double detection = detection_probability(sensor, r, landmark.diameter);
-    const double b = detection / bearing;
-    add(j,
-        {w.x() * w.x() / (r * r), w.x() * w.y() / (r * r), w.y() * w.y() / (r * r), w.x() / r, w.y() / r, 1},
-        b);
-    if (sensor.range_sd > 0) {
-      const double range = sensor.range_sd * sensor.range_sd / rate + 2 * correlation * u.dot(s * u);
-      add(j, {u.x() * u.x(), u.x() * u.y(), u.y() * u.y(), 0, 0, 0}, detection / range);
-    }
-    visit(i, j);
+    if (half_view < std::numbers::pi && !in_view(std::atan2(to.y(), to.x()), pose.yaw, half_view)) return;
+    if (sensing.visible && !sensing.visible(pose, map[i].at)) return;
+    visit(i, information_of(map[i], to, r, sensing));
   });
 }
 
-LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing) {
-  LandmarkSensing once = sensing;
-  if (!sensing.visible || !(sensing.coverage.view < 360)) return once;
-  once.visible = [&visible = sensing.visible, tested = std::vector<std::pair<Eigen::Vector2d, bool>>()](
-                     const localization::Pose2& pose, const Eigen::Vector2d& landmark) mutable {
-    const auto found = std::ranges::find(tested, landmark, &std::pair<Eigen::Vector2d, bool>::first);
-    if (found != tested.end()) return found->second;
-    return tested.emplace_back(landmark, visible(pose, landmark)).second;
-  };
-  return once;
+void visit_directions(const Eigen::Vector2d& at, int directions, const localization::LandmarkGrid& map,
+                      const LandmarkSensing& sensing, const VisitDirections& visit) {
+  const double half_view = half_view_of(sensing.coverage);
+  const unsigned all = (1U << directions) - 1;
+  std::array<double, kHeadings> yaws{};
+  for (int h = 0; h < directions; ++h) yaws[static_cast<std::size_t>(h)] = heading_pose(0, 0, h).yaw;
+  map.near(at, sensing.coverage.range, [&](std::uint32_t i) {
+    const Eigen::Vector2d to = map[i].at - at;
+    const double r = to.norm();
+    if (!(r > kMinRange)) return;
+    unsigned seen_in = all;
+    if (half_view < std::numbers::pi) {
+      const double azimuth = std::atan2(to.y(), to.x());
+      for (int h = 0; h < directions; ++h)
+        if (!in_view(azimuth, yaws[static_cast<std::size_t>(h)], half_view)) seen_in &= ~(1U << h);
+    }
+    if (seen_in == 0) return;
+    if (sensing.visible && !sensing.visible({at.x(), at.y(), 0}, map[i].at)) return;
+    visit(i, information_of(map[i], to, r, sensing), seen_in);
+  });
 }
 
 Information information_at(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                            const LandmarkSensing& sensing) {
   Information sum;
   visit_information(pose, map, sensing, [&](std::uint32_t i, const Symmetric3& information) {
-    if (map[i].quality < sensing.min_confidence) return;
-    add(sum.rate, information, map[i].quality);
-    ++sum.landmarks;
-    sum.quality += map[i].paper_quality;
+    if (!(map[i].quality < sensing.min_confidence)) add(sum, map[i], information);
   });
   return sum;
+}
+
+std::array<Information, kHeadings> information_in_directions(const Eigen::Vector2d& at, int directions,
+                                                             const localization::LandmarkGrid& map,
+                                                             const LandmarkSensing& sensing) {
+  std::array<Information, kHeadings> sums{};
+  visit_directions(at, directions, map, sensing,
+                   [&](std::uint32_t i, const Symmetric3& information, unsigned seen_in) {
+                     if (map[i].quality < sensing.min_confidence) return;
+                     for (int h = 0; h < directions; ++h)
+                       if (seen_in >> h & 1) add(sums[static_cast<std::size_t>(h)], map[i], information);
+                   });
+  return sums;
 }
 
 localization::Pose2 heading_pose(double x, double y, int heading) {
@@ -83,17 +119,12 @@ std::int64_t RouteCells::index(double px, double py) const {
   return static_cast<std::int64_t>(r) * columns + static_cast<std::int64_t>(c);
 }
 
-void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,
-                 const VisitCell& visit) {
-  const int headings = informative_headings(sensing);
-  const auto visit_row = [&](std::int64_t row) {
-    for (std::int64_t i = row * cells.columns; i < (row + 1) * cells.columns; ++i) {
-      if (!passable[static_cast<std::size_t>(i)]) continue;
-      const LandmarkSensing here = sensing_at_one_position(sensing);
-      for (int h = 0; h < headings; ++h) visit(i, h, here);
-    }
-  };
-  tbb::parallel_for(std::int64_t{0}, cells.rows, visit_row);
+void visit_cells(const RouteCells& cells, const std::vector<char>& passable,
+                 const std::function<void(std::int64_t cell)>& visit) {
+  tbb::parallel_for(std::int64_t{0}, cells.rows, [&](std::int64_t row) {
+    for (std::int64_t i = row * cells.columns; i < (row + 1) * cells.columns; ++i)
+      if (passable[static_cast<std::size_t>(i)]) visit(i);
+  });
 }
 
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
@@ -101,9 +132,9 @@ InformationField make_information_field(const RouteCells& cells, const std::vect
                                         const LandmarkSensing& sensing) {
   InformationField field{cells, informative_headings(sensing), {}};
   field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
-  visit_cells(cells, passable, sensing, [&](std::int64_t i, int h, const LandmarkSensing& here) {
-    field.at[static_cast<std::size_t>(i * field.headings + h)] =
-        information_at(heading_pose(cells.x(i), cells.y(i), h), map, here);
+  visit_cells(cells, passable, [&](std::int64_t i) {
+    const auto here = information_in_directions({cells.x(i), cells.y(i)}, field.headings, map, sensing);
+    std::copy_n(here.begin(), field.headings, field.at.begin() + i * field.headings);
   });
   return field;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -27,10 +28,6 @@ using VisitInformation = std::function<void(std::uint32_t landmark, const Symmet
 void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
                        const LandmarkSensing& sensing, const VisitInformation& visit);
 
-/// Returns the same sensing with each line of sight tested once, for several headings at one position.
-/// `sensing` must outlive it. A sensor that sees all round has one heading: nothing is kept.
-LandmarkSensing sensing_at_one_position(const LandmarkSensing& sensing);
-
 /// Information at a pose.
 struct Information {
   Symmetric3 rate;     ///< per metre driven; each landmark counts with its confidence
@@ -43,6 +40,18 @@ Information information_at(const localization::Pose2& pose, const localization::
 /// Directions of drives between cells: east, then counter-clockwise in steps of 45 degrees.
 inline constexpr int kHeadings = 8;
 localization::Pose2 heading_pose(double x, double y, int heading);
+
+/// Calls `visit` as visit_information() does, once for each landmark seen in any of the first directions, one
+/// to kHeadings. Bit h of `seen_in` is set if it is seen in direction h. Information does not depend on the
+/// heading, so it and the line of sight are computed once.
+using VisitDirections =
+    std::function<void(std::uint32_t landmark, const Symmetric3& information, unsigned seen_in)>;
+void visit_directions(const Eigen::Vector2d& at, int directions, const localization::LandmarkGrid& map,
+                      const LandmarkSensing& sensing, const VisitDirections& visit);
+/// Returns the information at a position in each of the first directions; the others are zero.
+std::array<Information, kHeadings> information_in_directions(const Eigen::Vector2d& at, int directions,
+                                                             const localization::LandmarkGrid& map,
+                                                             const LandmarkSensing& sensing);
 
 /// Square cells of the map frame on which routes are searched, row 0 in the south.
 struct RouteCells {
@@ -72,11 +81,9 @@ struct InformationField {
     return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
   }
 };
-/// Calls `visit` for each passable cell and each heading that has information of its own, with the sensing
-/// there. Rows run in parallel.
-using VisitCell = std::function<void(std::int64_t cell, int heading, const LandmarkSensing& here)>;
-void visit_cells(const RouteCells& cells, const std::vector<char>& passable, const LandmarkSensing& sensing,
-                 const VisitCell& visit);
+/// Calls `visit` for each passable cell. Rows run in parallel.
+void visit_cells(const RouteCells& cells, const std::vector<char>& passable,
+                 const std::function<void(std::int64_t cell)>& visit);
 
 /// Computes the field of the cells that are `passable`; others are empty. Threads do not change it.
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,

@@ -26,12 +26,12 @@ Observability observability_at(double x, double y, const localization::LandmarkG
                                const ObservabilityRules& rules) {
   const bool all_round = !(rules.sensing.coverage.view < 360);
   const double step = rules.drive / (1 << kDoublings);
-  const LandmarkSensing here = sensing_at_one_position(rules.sensing);
+  const auto in_directions =
+      information_in_directions({x, y}, informative_headings(rules.sensing), map, rules.sensing);
   Observability out;
-  Information seen;
   for (int heading = 0; heading < kHeadings; ++heading) {
     const localization::Pose2 pose = heading_pose(x, y, heading);
-    if (heading == 0 || !all_round) seen = information_at(pose, map, here);
+    const Information& seen = in_directions[all_round ? 0 : static_cast<std::size_t>(heading)];
     add(out.mean, seen, 1.0 / kHeadings);
     out.landmarks += static_cast<double>(seen.landmarks) / kHeadings;
     const Symmetric3 after = covariance_after(drive_segment({step, std::cos(pose.yaw), std::sin(pose.yaw), 0},

@@ -2,6 +2,7 @@
 #include "planning/world_beliefs.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -75,15 +76,21 @@ std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::ve
                                           const localization::LandmarkGrid& map,
                                           const LandmarkSensing& sensing) {
   std::vector<double> max_rates(slot(cells.count()), 0);
-  visit_cells(cells, passable, sensing, [&](std::int64_t cell, int heading, const LandmarkSensing& here) {
-    const localization::Pose2 pose = heading_pose(cells.x(cell), cells.y(cell), heading);
-    Symmetric3 sum;
-    visit_information(pose, map, here, [&](std::uint32_t i, const Symmetric3& information) {
-      const double detection =
-          detection_probability(sensing.coverage, (map[i].at - pose.at()).norm(), map[i].diameter);
-      if (detection > 0) add(sum, information, 1 - kRepeated + kRepeated / detection);
-    });
-    max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sum));
+  const int headings = informative_headings(sensing);
+  visit_cells(cells, passable, [&](std::int64_t cell) {
+    const Eigen::Vector2d at(cells.x(cell), cells.y(cell));
+    std::array<Symmetric3, kHeadings> sums{};
+    visit_directions(at, headings, map, sensing,
+                     [&](std::uint32_t i, const Symmetric3& information, unsigned seen_in) {
+                       const double detection =
+                           detection_probability(sensing.coverage, (map[i].at - at).norm(), map[i].diameter);
+                       if (!(detection > 0)) return;
+                       for (int h = 0; h < headings; ++h)
+                         if (seen_in >> h & 1)
+                           add(sums[slot(h)], information, 1 - kRepeated + kRepeated / detection);
+                     });
+    for (int h = 0; h < headings; ++h)
+      max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sums[slot(h)]));
   });
   return max_rates;
 }
