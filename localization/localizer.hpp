@@ -27,6 +27,9 @@ class Localizer {
   virtual bool fix(const HeadingFix&) { return false; }
   /// Returns the current estimate; always finite.
   virtual PoseEstimate estimate() const = 0;
+  /// Returns the pose with the covariance by which the method weighs measurements; that of its errors may be
+  /// another.
+  virtual PoseEstimate assumed_estimate() const { return estimate(); }
   virtual LocalizationStatus status() const { return LocalizationStatus::tracking; }
 };
 

@@ -64,7 +64,7 @@ void LogReplay::advance(double t) {
 
 void LogReplay::drive(BodyMotion motion, double seconds) {
   motion.step = project_to_map(motion.step, terrain_pose_);
-  if (errors_.any()) motion = errors_.correct(localizer_.estimate(), motion, seconds);
+  if (errors_.any()) motion = errors_.correct(localizer_.assumed_estimate(), motion, seconds);
   predict(motion);
 }
 
@@ -97,23 +97,23 @@ template <class Fix>
 bool LogReplay::take_fix(const Fix& fix, TrackRow&) {
   if (!options_.use_fixes) return false;
   ++track_.fixes;
-  const PoseEstimate prior = localizer_.estimate();
+  const PoseEstimate prior = localizer_.assumed_estimate();
   const bool used = localizer_.fix(errors_.relative_to_map(fix, prior));
   track_.fixes_rejected += !used;
   if (!errors_.any()) return false;
   if (localizer_.status() != LocalizationStatus::tracking)
-    errors_.consider(prior, localizer_.estimate());
+    errors_.consider(prior, localizer_.assumed_estimate());
   else if (used)
-    errors_.learn(fix, prior, localizer_.estimate());
+    errors_.learn(fix, prior, localizer_.assumed_estimate());
   return false;
 }
 
 void LogReplay::learn_errors(const PoseEstimate& prior) {
   if (!errors_.any()) return;
   if (localizer_.status() == LocalizationStatus::tracking)
-    errors_.learn(prior, localizer_.estimate());
+    errors_.learn(prior, localizer_.assumed_estimate());
   else
-    errors_.consider(prior, localizer_.estimate());
+    errors_.consider(prior, localizer_.assumed_estimate());
 }
 
 void LogReplay::learn_shift(const SightingSet& seen, const PoseEstimate& prior) {
@@ -128,7 +128,7 @@ bool LogReplay::take(SightingSet seen, TrackRow& row) {
     s.range_sd *= options_.sensor_noise;
   }
   repeated_.widen(seen, now_);
-  const PoseEstimate prior = localizer_.estimate();
+  const PoseEstimate prior = localizer_.assumed_estimate();
   const double before = clock_ ? clock_() : 0;
   matches_ = localizer_.update(seen);
   if (clock_) track_.seconds += row.seconds = clock_() - before;

@@ -27,6 +27,7 @@ class LocatingFilter final : public Localizer {
   bool fix(const GnssFix& gnss) override { return inner_->fix(gnss); }
   bool fix(const HeadingFix& heading) override { return inner_->fix(heading); }
   PoseEstimate estimate() const override { return inner_->estimate(); }
+  PoseEstimate assumed_estimate() const override { return inner_->assumed_estimate(); }
   LocalizationStatus status() const override { return inner_->status(); }
 
  private:

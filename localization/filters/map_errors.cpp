@@ -77,9 +77,18 @@ void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
   for (Entry& e : errors_) e.covariance = change * e.covariance;
 }
 
-PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& measured,
-                                const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
-                                bool unscented) {
+/// A sighting with all that a correction needs; rows that it lacks are zero.
+struct MapErrors::Linear {
+  LandmarkKey key;
+  Eigen::Vector2d innovation;
+  Eigen::Matrix<double, 2, 3> by_pose;
+  Eigen::Matrix2d by_landmark, map_error, noise;
+  WithLandmark with_landmark;  // covariance of the pose and the landmark's error
+};
+
+MapErrors::Linear MapErrors::linear_sighting(const PoseEstimate& before, const SeenLandmark& measured,
+                                             const Pose2& robot_from_sensor, const MapLandmark& landmark,
+                                             double trust, bool unscented) const {
   std::optional<SeenLandmark> corrected;
   if (!measured.bearing && !unscented)
     corrected = correct_curvature(measured, before, robot_from_sensor, landmark.at);
@@ -88,33 +97,65 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
                                         : by_derivatives(before, robot_from_sensor, landmark.at);
   const auto at = std::ranges::lower_bound(errors_, landmark.key, {}, &Entry::key);
   const bool known = at != errors_.end() && at->key == landmark.key;
-  const Eigen::Matrix2d map_error = landmark.covariance / trust;
-  const WithLandmark with =
-      known ? limit_correlation(at->covariance, before.covariance, map_error) : WithLandmark::Zero();
-  Eigen::Matrix<double, 2, 3> h = line.by_pose;
-  Eigen::Matrix2d b = line.by_landmark, r = sensor_noise(seen) / trust + line.residual;
-  omit_missing(seen, h, b, r);
-  const Eigen::Matrix3d& p = before.covariance;
-  const Eigen::Matrix<double, 3, 2> with_map = with * b.transpose();  // of pose and the map's part
-  const Eigen::Matrix<double, 3, 2> with_seen = p * h.transpose() + with_map;
-  const Eigen::Matrix2d s =
-      h * with_seen + with_map.transpose() * h.transpose() + b * map_error * b.transpose() + r;
-  const Eigen::Matrix<double, 3, 2> gain = with_seen * s.inverse();
-  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * h;
+  Linear all{.key = landmark.key,
+             .innovation = innovation(seen, line.value),
+             .by_pose = line.by_pose,
+             .by_landmark = line.by_landmark,
+             .map_error = landmark.covariance / trust,
+             .noise = sensor_noise(seen) / trust + line.residual,
+             .with_landmark = WithLandmark::Zero()};
+  if (known) all.with_landmark = limit_correlation(at->covariance, before.covariance, all.map_error);
+  omit_missing(seen, all.by_pose, all.by_landmark, all.noise);
+  return all;
+}
+
+// Joseph form, which holds for any gain; the landmark's error is not corrected.
+Eigen::Matrix3d MapErrors::apply(const Linear& line, const WithLandmark& gain, const Eigen::Matrix3d& p) {
+  const Eigen::Matrix2d& b = line.by_landmark;
+  const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * line.by_pose;
+  const WithLandmark with_map = line.with_landmark * b.transpose();
   const Eigen::Matrix3d cross = a * with_map * gain.transpose();
   const Eigen::Matrix3d after = a * p * a.transpose() - cross - cross.transpose() +
-                                gain * (b * map_error * b.transpose() + r) * gain.transpose();
+                                gain * (b * line.map_error * b.transpose() + line.noise) * gain.transpose();
   for (Entry& e : errors_) e.covariance = a * e.covariance;
   if (memory_ > 0) {
-    const WithLandmark now = a * with - gain * b * map_error;
-    if (known)
-      *at = {landmark.key, now, driven_};
+    const WithLandmark now = a * line.with_landmark - gain * b * line.map_error;
+    const auto at = std::ranges::lower_bound(errors_, line.key, {}, &Entry::key);
+    if (at != errors_.end() && at->key == line.key)
+      *at = {line.key, now, driven_};
     else
-      errors_.insert(at, {landmark.key, now, driven_});
+      errors_.insert(at, {line.key, now, driven_});
     drop_old();
   }
-  return {pose_of(before.pose.vector() + gain * innovation(seen, line.value)),
-          (after + after.transpose()) / 2};
+  return (after + after.transpose()) / 2;
+}
+
+PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& seen,
+                                const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
+                                bool unscented) {
+  const Linear line = linear_sighting(before, seen, robot_from_sensor, landmark, trust, unscented);
+  const Eigen::Matrix<double, 2, 3>& h = line.by_pose;
+  const Eigen::Matrix2d& b = line.by_landmark;
+  const WithLandmark with_map = line.with_landmark * b.transpose();
+  const WithLandmark with_seen = before.covariance * h.transpose() + with_map;
+  const Eigen::Matrix2d s =
+      h * with_seen + with_map.transpose() * h.transpose() + b * line.map_error * b.transpose() + line.noise;
+  const WithLandmark gain = with_seen * s.inverse();
+  const Eigen::Matrix3d after = apply(line, gain, before.covariance);
+  return {pose_of(before.pose.vector() + gain * line.innovation), after};
+}
+
+MapErrors::Covariances MapErrors::follow(const Pose2& pose, const Covariances& before,
+                                         const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                                         const MapLandmark& landmark, double factor) {
+  const Linear line = linear_sighting({pose, before.real}, seen, robot_from_sensor, landmark, 1, false);
+  const Eigen::Matrix2d& b = line.by_landmark;
+  const WithLandmark with_seen = before.assumed * line.by_pose.transpose();
+  const WithLandmark gain =
+      with_seen *
+      (line.by_pose * with_seen + factor * b * line.map_error * b.transpose() + line.noise).inverse();
+  const Eigen::Matrix3d assumed = before.assumed - gain * with_seen.transpose();
+  return {.real = apply(line, gain, before.real), .assumed = (assumed + assumed.transpose()) / 2};
 }
 
 PoseEstimate MapErrors::correct_probably(const PoseEstimate& before, const SeenLandmark& seen,

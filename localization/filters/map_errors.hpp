@@ -29,6 +29,14 @@ class MapErrors {
   PoseEstimate correct_probably(const PoseEstimate& before, const SeenLandmark& seen,
                                 const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
                                 double probability, bool unscented = false);
+  /// Covariances of a pose: of its real errors, and the one that its localizer assumes and corrects it by.
+  struct Covariances {
+    Eigen::Matrix3d real, assumed;
+  };
+  /// Returns the covariances after a correction at `pose` by a localizer that takes all errors for
+  /// independent and the map's variance for `factor` times as large.
+  Covariances follow(const Pose2& pose, const Covariances& before, const SeenLandmark& seen,
+                     const Pose2& robot_from_sensor, const MapLandmark& landmark, double factor);
   /// Becomes those of a mixture of two poses, with weights 1 - `other_weight` and `other_weight`.
   void mix(const MapErrors& other, double other_weight);
   /// Forgets all: the pose is a new one.
@@ -43,6 +51,10 @@ class MapErrors {
     WithLandmark covariance;
     double driven;  // at the last sighting, m
   };
+  struct Linear;
+  Linear linear_sighting(const PoseEstimate& before, const SeenLandmark& seen, const Pose2& robot_from_sensor,
+                         const MapLandmark& landmark, double trust, bool unscented) const;
+  Eigen::Matrix3d apply(const Linear& line, const WithLandmark& gain, const Eigen::Matrix3d& before);
   void drop_old();
 
   double memory_, driven_ = 0;

@@ -47,6 +47,7 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatche
   if (!start) {
     searching_ = true;
     summary_ = pose_anywhere(matcher_.landmarks_near({0, 0}, 0).bounds());
+    real_.reset(summary_);
     convergence_.emplace(summary_, matcher_.options().use_identities);
     if (!matcher_.options().use_identities) chance_ = make_chance_fraction(matcher_);
     return;
@@ -54,6 +55,7 @@ ParticleFilter::ParticleFilter(std::optional<PoseEstimate> start, LandmarkMatche
   if (!start->pose.finite() || !start->covariance.allFinite())
     throw std::invalid_argument("the start of a filter must be finite");
   summary_ = *start;
+  real_.reset(summary_);
   const auto count = static_cast<std::size_t>(options_.particles);
   const Eigen::Matrix3d root = square_root(start->covariance);
   Random random(static_cast<std::uint64_t>(options_.seed), "start");
@@ -76,6 +78,7 @@ void ParticleFilter::predict(const BodyMotion& motion) {
 }
 
 void ParticleFilter::apply_motion() {
+  real_.predict(summary_.pose, pending_);
   summary_ = predict_pose(summary_, pending_);
   const Eigen::Matrix3d root = square_root(pending_.covariance);
   const std::uint64_t stream = named_seed(static_cast<std::uint64_t>(options_.seed), "motion") + ++step_;
@@ -98,11 +101,25 @@ double ParticleFilter::map_error_factor(LandmarkKey key) const {
   return 1 + used->second.count * std::exp((used->second.driven - driven_) / kNewError);
 }
 
+// The paper's weights are no likelihoods, and several clouds no Gaussian: the particles speak for themselves.
+void ParticleFilter::follow_sightings(const PoseEstimate& before, const SightingSet& seen,
+                                      const std::vector<Match>& matches, const LandmarkGrid& map) {
+  if (searching_ || options_.weight.weights == "paper" || !is_unimodal(summary_) || !is_unimodal(before))
+    return real_.reset(summary_);
+  real_.follow_sightings(before, summary_, seen, matches, map,
+                         [this](LandmarkKey key) { return map_error_factor(key); });
+}
+
 template <class Fit>
 bool ParticleFilter::reweight(Fit&& fit) {
+  const PoseEstimate before = summary_;
   for (std::size_t i = 0; i < poses_.size(); ++i) weights_[i] = std::log(weights_[i]) + fit(poses_[i]);
   weights_ = normalise_log_weights(weights_);
   summary_ = dominant_mode(poses_, weights_, kModeRadius);
+  if (is_unimodal(summary_) && is_unimodal(before))
+    real_.follow_independent(before, summary_);
+  else
+    real_.reset(summary_);
   if (effective_sample_size(weights_) < options_.resample_below * static_cast<double>(poses_.size())) {
     Random random(static_cast<std::uint64_t>(options_.seed) + step_, "draw by fix");
     std::vector<Pose2> next;
@@ -126,6 +143,7 @@ void ParticleFilter::sample_around_fix(const GnssFix& gnss, double kept) {
     weights_.push_back((1 - kept) / static_cast<double>(count));
   }
   summary_ = dominant_mode(poses_, weights_, kModeRadius);
+  real_.reset(summary_);
 }
 
 bool ParticleFilter::fix(const GnssFix& gnss) {
@@ -181,6 +199,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     search(seen, map, static_cast<std::size_t>(options_.search_particles));
   if (poses_.empty()) return std::vector<Match>(seen.sightings.size());
 
+  const PoseEstimate before = summary_;
   weigh(seen, map);
   contested_ = 0;
   summary_ = dominant_mode(poses_, weights_, kModeRadius);
@@ -191,6 +210,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
 
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
   if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
+  follow_sightings(before, seen, matches, map);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) {
       name_landmark(match, map[match.pairing.landmark]);

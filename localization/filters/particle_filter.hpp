@@ -3,6 +3,7 @@
 #include <optional>
 #include <unordered_map>
 #include "core/random.hpp"
+#include "localization/filters/cloud_covariance.hpp"
 #include "localization/filters/convergence.hpp"
 #include "localization/filters/particle_weights.hpp"
 #include "localization/global/pose_finder.hpp"
@@ -47,10 +48,8 @@ class ParticleFilter final : public Localizer {
   std::vector<Match> update(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override;
   bool fix(const HeadingFix& heading) override;
-  PoseEstimate estimate() const override {
-    return convergence_ ? convergence_->inflate_covariance(predict_pose(summary_, pending_))
-                        : predict_pose(summary_, pending_);
-  }
+  PoseEstimate estimate() const override { return now({summary_.pose, real_.covariance()}); }
+  PoseEstimate assumed_estimate() const override { return now(summary_); }
   LocalizationStatus status() const override;
 
   /// Sets the line-of-sight test. With `expect_unseen`, hidden landmarks are not expected.
@@ -59,10 +58,16 @@ class ParticleFilter final : public Localizer {
   std::size_t particles() const { return poses_.size(); }
 
  private:
+  PoseEstimate now(const PoseEstimate& at_update) const {
+    const PoseEstimate moved = predict_pose(at_update, pending_);
+    return convergence_ ? convergence_->inflate_covariance(moved) : moved;
+  }
   static constexpr double kModeRadius = 1.5;  // m: particles nearer than this are one hypothesis
 
   void apply_motion();  // moves the particles by the motion since the last call
   void weigh(const SightingSet& seen, const LandmarkGrid& map);
+  void follow_sightings(const PoseEstimate& before, const SightingSet& seen,
+                        const std::vector<Match>& matches, const LandmarkGrid& map);
   bool is_unimodal(const PoseEstimate& cloud) const;  // whether the particles are one cloud
   void resample_particles(const SightingSet& seen, const LandmarkGrid& map);
   std::optional<Pose2> sample_pose(const SightingSet& seen, const LandmarkGrid& map, Random& random) const;
@@ -83,7 +88,8 @@ class ParticleFilter final : public Localizer {
   std::vector<Pose2> poses_;
   std::vector<double> weights_;  // sum to 1
   BodyMotion pending_;
-  PoseEstimate summary_;
+  PoseEstimate summary_;  // of the particles
+  CloudCovariance real_;  // of the errors of its pose
   std::uint64_t step_ = 0;
   double slow_ = 0, fast_ = 0;
   bool searching_ = false;

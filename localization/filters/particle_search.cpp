@@ -70,6 +70,7 @@ void ParticleFilter::sample_found(const PoseEstimate& at) {
                              root * Eigen::Vector3d(random.normal(), random.normal(), random.normal())));
   weights_.assign(count, 1 / static_cast<double>(count));
   summary_ = at;
+  real_.reset(summary_);
   searching_ = false;
   slow_ = fast_ = 0;
   convergence_->accept();

@@ -39,6 +39,9 @@ class RelocalizingFilter final : public Localizer {
   PoseEstimate estimate() const override {
     return chance_matches_ || !located_ ? reliable_ : inner_->estimate();
   }
+  PoseEstimate assumed_estimate() const override {
+    return chance_matches_ || !located_ ? reliable_ : inner_->assumed_estimate();
+  }
   LocalizationStatus status() const override { return lost() ? LocalizationStatus::lost : inner_->status(); }
   int restarts() const { return restarts_; }
 

@@ -97,6 +97,17 @@ struct PoseAndLandmarks {
     const Eigen::Matrix2d r = sensor_noise(seen), s = h * covariance * h.transpose() + r;
     Eigen::MatrixXd gain = covariance * h.transpose() * s.inverse();
     gain.bottomRows(covariance.rows() - 3).setZero();
+    correct_by(gain.topRows<3>(), seen, at, which);
+  }
+  // By the gain of another.
+  void correct_by(const Eigen::Matrix<double, 3, 2>& by, const SeenLandmark& seen, const Eigen::Vector2d& at,
+                  Eigen::Index which) {
+    const ExpectedSighting e = expect(pose, {}, at);
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(2, covariance.rows());
+    h.leftCols<3>() = e.by_pose, h.middleCols<2>(3 + 2 * which) = e.by_landmark;
+    const Eigen::Matrix2d r = sensor_noise(seen);
+    Eigen::MatrixXd gain = Eigen::MatrixXd::Zero(covariance.rows(), 2);
+    gain.topRows<3>() = by;
     pose = pose_of(pose.vector() + gain.topRows<3>() * innovation(seen, e.value));
     const Eigen::MatrixXd a = Eigen::MatrixXd::Identity(covariance.rows(), covariance.rows()) - gain * h;
     covariance = (a * covariance * a.transpose() + gain * r * gain.transpose()).eval();
@@ -133,6 +144,50 @@ TEST(MapErrors, AreThoseOfAStateWithAllLandmarks) {
       at = errors.correct(at, s, {}, map[which], 1);
       ASSERT_LT((at.covariance - whole.covariance.topLeftCorner<3, 3>()).norm(), 1e-9) << seed << ' ' << k;
       ASSERT_LT((at.pose.vector() - whole.pose.vector()).norm(), 1e-9) << seed << ' ' << k;
+    }
+  }
+}
+
+// A localizer that takes the errors for new, but larger, has other errors than it assumes.
+TEST(MapErrors, OfAnotherLocalizerAreThoseOfItsGain) {
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed, "follow");
+    std::vector<MapLandmark> map(4);
+    PoseAndLandmarks whole{{}, Eigen::MatrixXd::Zero(11, 11)};
+    whole.covariance.topLeftCorner<3, 3>() = Eigen::Vector3d(0.1, 0.2, 0.01).asDiagonal();
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      map[i].key = i + 1;
+      map[i].at = {random.uniform(5, 20), random.uniform(-10, 10)};
+      map[i].covariance = random.uniform(0.01, 0.3) * Eigen::Matrix2d::Identity();
+      const auto row = static_cast<Eigen::Index>(3 + 2 * i);
+      whole.covariance.block<2, 2>(row, row) = map[i].covariance;
+    }
+    const Eigen::Matrix3d start = whole.covariance.topLeftCorner<3, 3>();
+    MapErrors::Covariances both{start, start};
+    MapErrors errors;
+    for (int k = 0; k < 40; ++k) {
+      const BodyMotion motion = twist_motion(0.2, 0, random.uniform(-0.1, 0.1), 1, {});
+      const Pose2 from = whole.pose;
+      errors.predict(from, motion.step);
+      both = {predict_pose({from, both.real}, motion).covariance,
+              predict_pose({from, both.assumed}, motion).covariance};
+      whole.predict(motion);
+      const std::size_t which = random.uniform_index(map.size());
+      const double factor = 1 + k % 5;
+      SeenLandmark s;
+      const ExpectedSighting e = expect(whole.pose, {}, map[which].at);
+      s.range = e.value[0] + random.normal(0, 0.1), s.range_sd = 0.1;
+      s.bearing = wrap_angle(e.value[1] + random.normal(0, 0.02)), s.bearing_sd = 0.02;
+      const Eigen::Matrix<double, 3, 2> with = both.assumed * e.by_pose.transpose();
+      const Eigen::Matrix2d seen =
+          e.by_pose * with + factor * e.by_landmark * map[which].covariance * e.by_landmark.transpose() +
+          sensor_noise(s);
+      const Eigen::Matrix<double, 3, 2> gain = with * seen.inverse();
+      const Eigen::Matrix3d assumed = both.assumed - gain * with.transpose();
+      both = errors.follow(whole.pose, both, s, {}, map[which], factor);
+      whole.correct_by(gain, s, map[which].at, static_cast<Eigen::Index>(which));
+      ASSERT_LT((both.real - whole.covariance.topLeftCorner<3, 3>()).norm(), 1e-9) << seed << ' ' << k;
+      ASSERT_LT((both.assumed - assumed).norm(), 1e-9) << seed << ' ' << k;
     }
   }
 }
