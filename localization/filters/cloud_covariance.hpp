@@ -9,8 +9,8 @@
 namespace waymark::localization {
 
 /// Covariance of the real errors of a particle filter's pose.
-/// - The particles' own is not it: they take the errors of the map for new at each sighting and widen them by
-///   1 + recent sightings instead, so their cloud is too wide most of the time.
+/// - That of the particles is another. They take the errors of the map for new at each sighting, but
+///   1 + recent sightings times as large: the cloud is too wide most of the time.
 /// - Follows what each update of the cloud made of the errors: the gain that the particles' assumptions
 /// imply,
 ///   applied to errors that repeat (MapErrors, Schmidt 1966; Joseph form holds for any gain). First order.

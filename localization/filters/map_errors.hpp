@@ -29,12 +29,12 @@ class MapErrors {
   PoseEstimate correct_probably(const PoseEstimate& before, const SeenLandmark& seen,
                                 const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
                                 double probability, bool unscented = false);
-  /// Covariances of a pose: of its real errors, and the one that its localizer assumes and corrects it by.
+  /// Covariance of a pose's errors, and the covariance that its localizer assumes and corrects it by.
   struct Covariances {
     Eigen::Matrix3d real, assumed;
   };
-  /// Returns the covariances after a correction at `pose` by a localizer that takes all errors for
-  /// independent and the map's variance for `factor` times as large.
+  /// Returns the covariances after a correction at `pose`. The localizer takes all errors for independent,
+  /// and the map's variance for `factor` times as large.
   Covariances follow(const Pose2& pose, const Covariances& before, const SeenLandmark& seen,
                      const Pose2& robot_from_sensor, const MapLandmark& landmark, double factor);
   /// Becomes those of a mixture of two poses, with weights 1 - `other_weight` and `other_weight`.

@@ -6,11 +6,14 @@
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <memory>
 
 #include "core/random.hpp"
 #include "localization/filters/map_errors.hpp"
 #include "localization/filters/measurement.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
+#include "localization/filters/particle_filter.hpp"
 #include "localization/motion_model.hpp"
 
 namespace waymark::test {
@@ -18,9 +21,14 @@ using namespace localization;
 namespace {
 
 // A machine drives slowly through landmarks whose places on the map err by half a metre per axis. Returns the
-// mean of the squared errors over the variances the filter claims.
-double consistency(double error_correlation_distance) {
-  double sum = 0;
+// mean of the squared errors over the variances that the filter claims, and over those that it corrects by.
+struct Consistency {
+  double claimed = 0, assumed = 0;
+};
+using MakeFilter =
+    std::function<std::unique_ptr<Localizer>(const PoseEstimate& start, LandmarkMatcher matcher)>;
+Consistency consistency(const MakeFilter& make) {
+  Consistency sum;
   int rows = 0;
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Random random(seed, "map errors");
@@ -34,16 +42,14 @@ double consistency(double error_correlation_distance) {
     }
     PoseEstimate start;
     start.covariance = Eigen::Vector3d(0.25, 0.25, 0.01).asDiagonal();
-    MultiHypothesisFilter filter(start,
-                                 LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999}),
-                                 {.error_correlation_distance = error_correlation_distance, .search = {}});
+    const auto filter = make(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid(map)}, {}, {.gate = 0.999}));
     Pose2 truth;
     for (int step = 0; step < 80; ++step) {
       const BodyMotion odometry = twist_motion(0.5, 0, 0, 1, {});
       const Eigen::Vector3d off = odometry.covariance.diagonal().cwiseSqrt().cwiseProduct(
           Eigen::Vector3d(random.normal(), random.normal(), random.normal()));
       truth = truth * pose_of(odometry.step.vector() + off);
-      filter.predict(odometry);
+      filter->predict(odometry);
       SightingSet seen;
       for (std::size_t i = 0; i < real.size(); ++i) {
         const Eigen::Vector2d d = real[i] - truth.at();
@@ -56,15 +62,36 @@ double consistency(double error_correlation_distance) {
         s.identity = i + 1;
         seen.sightings.push_back(s);
       }
-      filter.update(seen);
+      filter->update(seen);
       if (step < 20) continue;
-      const PoseEstimate e = filter.estimate();
-      const Eigen::Vector2d error = e.pose.at() - truth.at();
-      sum += error.dot(e.covariance.topLeftCorner<2, 2>().inverse() * error) / 2;
+      const auto squares = [&](const PoseEstimate& e) {
+        const Eigen::Vector2d error = e.pose.at() - truth.at();
+        return error.dot(e.covariance.topLeftCorner<2, 2>().inverse() * error) / 2;
+      };
+      sum.claimed += squares(filter->estimate()), sum.assumed += squares(filter->assumed_estimate());
       ++rows;
     }
   }
-  return sum / rows;
+  return {sum.claimed / rows, sum.assumed / rows};
+}
+
+double consistency(double error_correlation_distance) {
+  const auto make = [&](const PoseEstimate& start, LandmarkMatcher matcher) {
+    return std::make_unique<MultiHypothesisFilter>(
+        start, std::move(matcher),
+        MultiHypothesisOptions{.error_correlation_distance = error_correlation_distance, .search = {}});
+  };
+  return consistency(make).claimed;
+}
+
+TEST(ParticleFilter, KnowsThatTheMapErrsTheSameWayAgain) {
+  const Consistency found = consistency([](const PoseEstimate& start, LandmarkMatcher matcher) {
+    return std::make_unique<ParticleFilter>(start, std::move(matcher));
+  });
+  std::printf("mean squared error over claimed variance: %.2f, over that of the particles: %.2f\n",
+              found.claimed, found.assumed);
+  EXPECT_GT(found.claimed, 0.7);
+  EXPECT_LT(found.claimed, 1.4);
 }
 
 TEST(MultiHypothesisFilter, KnowsThatTheMapErrsTheSameWayAgain) {
