@@ -64,8 +64,8 @@ struct PosedCamera {
 /// distortion is not invertible there.
 std::optional<Ray<GridFrame>> ray(const PosedCamera& view, const Eigen::Vector2d& pixel);
 /// Projects a point of the grid frame; `std::nullopt` as for a Camera, and where the pose that sees the point
-/// is not found. Of a camera that moves the row decides the pose and the pose the row: fixed-point iteration
-/// to 1e-6 px, 3 to 6 projections where the image moves by a twentieth of its height.
+/// is not found. The pose of a moving camera follows from the row, and the row from the pose: fixed-point
+/// iteration to 1e-6 px, 3 to 6 projections where the image moves by a twentieth of its height.
 std::optional<Eigen::Vector2d> project(const PosedCamera& view, const Point<GridFrame>& point);
 
 }  // namespace waymark::inline geo

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 
 #include "core/units.hpp"
 
@@ -13,14 +14,6 @@ namespace waymark::planning {
 namespace {
 
 constexpr double kMinRange = 0.1;  // m: nearer, a bearing has no direction
-
-double half_view_of(const SensorCoverage& sensor) {
-  return sensor.view / 2 * kRadiansPerDegree;
-}
-
-bool in_view(double azimuth, double yaw, double half_view) {
-  return !(std::abs(localization::wrap_angle(azimuth - yaw)) > half_view);
-}
 
 /// Returns the information per metre driven of a landmark in the direction `to`, r metres away.
 Symmetric3 information_of(const localization::MapLandmark& landmark, const Eigen::Vector2d& to, double r,
@@ -50,41 +43,41 @@ void add(Information& sum, const localization::MapLandmark& landmark, const Symm
   sum.quality += landmark.paper_quality;
 }
 
-}  // namespace
-
-void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
-                       const LandmarkSensing& sensing, const VisitInformation& visit) {
-  const double half_view = half_view_of(sensing.coverage);
-  map.near(pose.at(), sensing.coverage.range, [&](std::uint32_t i) {
-    const Eigen::Vector2d to = map[i].at - pose.at();
-    const double r = to.norm();
-    if (!(r > kMinRange)) return;
-    if (half_view < std::numbers::pi && !in_view(std::atan2(to.y(), to.x()), pose.yaw, half_view)) return;
-    if (sensing.visible && !sensing.visible(pose, map[i].at)) return;
-    visit(i, information_of(map[i], to, r, sensing));
-  });
-}
-
-void visit_directions(const Eigen::Vector2d& at, int directions, const localization::LandmarkGrid& map,
-                      const LandmarkSensing& sensing, const VisitDirections& visit) {
-  const double half_view = half_view_of(sensing.coverage);
-  const unsigned all = (1U << directions) - 1;
-  std::array<double, kHeadings> yaws{};
-  for (int h = 0; h < directions; ++h) yaws[static_cast<std::size_t>(h)] = heading_pose(0, 0, h).yaw;
+/// Calls `visit` with each landmark that the sensor sees at one of the headings, its information, and the
+/// headings as bits.
+template <class Visit>
+void visit_seen(const Eigen::Vector2d& at, std::span<const double> yaws,
+                const localization::LandmarkGrid& map, const LandmarkSensing& sensing, const Visit& visit) {
+  const double half_view = sensing.coverage.view / 2 * kRadiansPerDegree;
   map.near(at, sensing.coverage.range, [&](std::uint32_t i) {
     const Eigen::Vector2d to = map[i].at - at;
     const double r = to.norm();
     if (!(r > kMinRange)) return;
-    unsigned seen_in = all;
+    unsigned seen_in = (1U << yaws.size()) - 1;
     if (half_view < std::numbers::pi) {
       const double azimuth = std::atan2(to.y(), to.x());
-      for (int h = 0; h < directions; ++h)
-        if (!in_view(azimuth, yaws[static_cast<std::size_t>(h)], half_view)) seen_in &= ~(1U << h);
+      for (std::size_t h = 0; h < yaws.size(); ++h)
+        if (std::abs(localization::wrap_angle(azimuth - yaws[h])) > half_view) seen_in &= ~(1U << h);
     }
     if (seen_in == 0) return;
-    if (sensing.visible && !sensing.visible({at.x(), at.y(), 0}, map[i].at)) return;
+    if (sensing.visible && !sensing.visible({at.x(), at.y(), yaws.front()}, map[i].at)) return;
     visit(i, information_of(map[i], to, r, sensing), seen_in);
   });
+}
+
+}  // namespace
+
+void visit_information(const localization::Pose2& pose, const localization::LandmarkGrid& map,
+                       const LandmarkSensing& sensing, const VisitInformation& visit) {
+  visit_seen(pose.at(), std::span(&pose.yaw, 1), map, sensing,
+             [&](std::uint32_t i, const Symmetric3& information, unsigned) { visit(i, information); });
+}
+
+void visit_directions(const Eigen::Vector2d& at, int directions, const localization::LandmarkGrid& map,
+                      const LandmarkSensing& sensing, const VisitDirections& visit) {
+  std::array<double, kHeadings> yaws{};
+  for (int h = 0; h < kHeadings; ++h) yaws[static_cast<std::size_t>(h)] = heading_pose(0, 0, h).yaw;
+  visit_seen(at, std::span(yaws).first(static_cast<std::size_t>(directions)), map, sensing, visit);
 }
 
 Information information_at(const localization::Pose2& pose, const localization::LandmarkGrid& map,

@@ -35,7 +35,7 @@ void CloudCovariance::follow_sightings(const PoseEstimate& before, const PoseEst
   if (!(after.covariance.trace() < kMaxSpread * both.assumed.trace()) || !is_usable(both.real))
     return reset(after);
   real_ = both.real;
-  // Sightings of which no pairing is certain corrected the cloud, too.
+  // Sightings without a certain pairing corrected the cloud, too.
   const bool followed =
       std::ranges::all_of(matches, [](const Match& m) { return m.verdict == Verdict::matched; });
   if (!followed && after.covariance.trace() < both.assumed.trace())

@@ -11,9 +11,8 @@ namespace waymark::localization {
 /// Covariance of the real errors of a particle filter's pose.
 /// - That of the particles is another. They take the errors of the map for new at each sighting, but
 ///   1 + recent sightings times as large: the cloud is too wide most of the time.
-/// - Follows what each update of the cloud made of the errors: the gain that the particles' assumptions
-/// imply,
-///   applied to errors that repeat (MapErrors, Schmidt 1966; Joseph form holds for any gain). First order.
+/// - Each update is followed: the gain that the particles' assumptions imply acts on errors that repeat
+///   (MapErrors, Schmidt 1966; Joseph form holds for any gain). First order.
 /// - Where the cloud is not one Gaussian, or spreads more than its assumptions say, it is that of the cloud.
 class CloudCovariance {
  public:
