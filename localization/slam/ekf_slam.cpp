@@ -3,12 +3,8 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <limits>
-#include <tuple>
 
 #include "core/covariance.hpp"
-#include "localization/chi_square.hpp"
-#include "localization/filters/measurement.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
 
@@ -16,35 +12,10 @@ namespace waymark::localization {
 namespace {
 
 constexpr double kRangeMargin =
-    10;  // m beyond the range of sightings in which landmarks are still considered
-constexpr double kJointGate = 0.999;  // probability that right pairs of a set agree
-constexpr double kCertainty = 0.9;    // of a pair with a landmark of the map: it is not revised
+    10;                             // m beyond the range of sightings in which landmarks are still considered
+constexpr double kCertainty = 0.9;  // of a pair with a landmark of the map: it is not revised
 
 }  // namespace
-
-void SlamOptions::describe(OptionVisitor& option) {
-  option("slam_match", match,
-         {.help = "Squared Mahalanobis distance up to which a sighting matches a landmark", .min = 0});
-  option("slam_new_landmark", fresh,
-         {.help = "Squared Mahalanobis distance beyond which a sighting is a new landmark",
-          .min = 0,
-          .formerly = "slam_fresh"});
-  option("slam_min_spacing", nearest,
-         {.help = "Smallest distance between two landmarks, metres", .min = 0, .formerly = "slam_nearest"});
-  option("slam_range", max_range, {.help = "Largest range of sightings, metres", .min = 0.1});
-  option("slam_seen", seen, {.help = "Log odds of existence that a match adds", .min = 0});
-  option("slam_unseen", unseen, {.help = "Log odds of existence that a missed detection adds", .max = 0});
-  option("slam_confirmed", confirmed, {.help = "Log odds from which a landmark is written to a map"});
-  option("slam_dropped", dropped, {.help = "Log odds below which a landmark is removed"});
-  option("slam_view", field_of_view,
-         {.help = "Radians to each side where sightings are expected", .min = 0, .max = 3.15});
-  option("slam_margin", margin,
-         {.help = "Metres driven between two updates of the landmarks out of sight", .min = 0.1});
-  option("slam_feature_tolerance", feature_tolerance,
-         {.help = "Relative standard deviation between two sightings of a landmark", .min = 1e-3, .max = 10});
-  option("slam_feature_limit", feature_limit,
-         {.help = "Squared standard deviations by which a feature may differ", .min = 0});
-}
 
 EkfSlam::EkfSlam(const PoseEstimate& start, SlamOptions options)
     : EkfSlam(start, LandmarkGrid(), FeatureScales(), options) {}
@@ -124,11 +95,13 @@ double EkfSlam::reach() const {
 }
 
 // Returns active landmarks, and those of the map nearby that were not seen yet.
-std::vector<EkfSlam::Near> EkfSlam::landmarks_in_reach(const SightingSet& seen) const {
+std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) const {
   const Pose2 sensor = state_.pose() * seen.robot_from_sensor;
+  const Eigen::Matrix3d robot = state_.covariance();
   const double reach = this->reach();
-  std::vector<Near> near;
+  std::vector<SlamCandidate> near;
   const auto look_at = [&](std::size_t l) {
+    const SlamLandmark& landmark = landmarks_[l];
     const Eigen::Vector2d to = position(l) - sensor.at();
     const double range = to.norm();
     if (range > reach) return;
@@ -137,24 +110,21 @@ std::vector<EkfSlam::Near> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
     const bool expected = range < 0.7 * std::min(options_.max_range, reach_) &&
                           std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
                           (!visible_ || visible_(sensor, position(l)));
-    near.push_back({l, expected});
+    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, position(l));
+    Eigen::Matrix2d covariance = e.by_pose * robot * e.by_pose.transpose();
+    if (landmark.slot) {
+      const Eigen::Matrix2d both = e.by_landmark * state_.cross(*landmark.slot) * e.by_pose.transpose();
+      covariance += both + both.transpose();
+    }
+    covariance += e.by_landmark * (landmark.slot ? state_.covariance(*landmark.slot) : landmark.covariance) *
+                  e.by_landmark.transpose();
+    near.push_back({l, expected, e, covariance});
   };
   for (const SlamState::Slot slot : state_.active()) look_at(landmark_by_slot_[slot]);
   map_.near(sensor.at(), reach, [&](std::uint32_t i) {
     if (!landmarks_[i].slot && !landmarks_[i].gone) look_at(i);
   });
   return near;
-}
-
-/// Returns the squared distance of the features less its mean; infinite if they exclude each other.
-double EkfSlam::feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const {
-  constexpr double kNever = std::numeric_limits<double>::infinity();
-  if (seen.may_be_anything() || !landmark.type) return 0;
-  const KnownFeatures* const features = seen.features_as(*landmark.type);
-  if (!features) return kNever;
-  const FeatureComparison c =
-      compare_features(scales_, *landmark.type, *features, landmark.features, options_.feature_tolerance);
-  return c.largest > options_.feature_limit ? kNever : c.squares - c.used;
 }
 
 // Returns the landmark of the map that each sighting shows with certainty.
@@ -186,17 +156,10 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
   return keys;
 }
 
-std::vector<Match> EkfSlam::update(const SightingSet& set) {
-  const auto named = [&](const SeenLandmark& s) {
-    return options_.identification.use_identities && s.identity;
-  };
-  const auto usable = [&](const SeenLandmark& s) {
-    if (!s.is_valid() || s.type == kNoSuchType) return false;
-    // A beacon that identifies itself is heard farther than landmarks are seen.
-    return !s.range || *s.range <= options_.max_range || (!s.bearing && named(s));
-  };
-  for (const SeenLandmark& s : set.sightings) {
-    if (!usable(s)) continue;
+// Learns how far and how wide the sensor sees.
+void EkfSlam::note_reach(const SightingSet& seen) {
+  for (const SeenLandmark& s : seen.sightings) {
+    if (!is_usable(s, options_)) continue;
     if (!s.range)
       sees_bearings_ = true;
     else if (!s.bearing)
@@ -204,122 +167,37 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
     else
       reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(*s.bearing));
   }
-  apply_pending_motion();
-  const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
-  std::vector<Match> matches(set.sightings.size());
-  // Signatures of landmarks are those of a map.
-  SightingSet seen = set;
+}
+
+// Returns the sightings with directions turned into the map: signatures of landmarks are those of a map.
+SightingSet EkfSlam::with_features_in_map(SightingSet seen) const {
   for (SeenLandmark& s : seen.sightings)
     if (s.type)
       s.features = features_in_map(scales_, *s.type, s.features,
-                                   state_.pose().yaw + set.robot_from_sensor.yaw, state_.covariance()(2, 2));
+                                   state_.pose().yaw + seen.robot_from_sensor.yaw, state_.covariance()(2, 2));
+  return seen;
+}
+
+std::vector<Match> EkfSlam::update(const SightingSet& set) {
+  note_reach(set);
+  apply_pending_motion();
+  const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
+  const SightingSet seen = with_features_in_map(set);
+  const std::vector<SlamCandidate> near = landmarks_in_reach(seen);
+  SlamPairs found = compare_with_landmarks(seen.sightings, near, landmarks_, in_map, scales_, options_);
+  std::vector<Match> matches(seen.sightings.size());
   last_.assign(matches.size(), std::nullopt);
-  std::vector<Pair> pairs;
-  std::vector<double> lowest(matches.size(), 1e9), closest(matches.size(), 1e9);
-  std::vector<bool> differs(matches.size(), false);
-  const std::vector<Near> near = landmarks_in_reach(seen);
-  std::vector<bool> found(landmarks_.size(), false);
-  const Eigen::Matrix3d robot = state_.covariance();
-  for (const auto& [l, is_expected] : near) {
-    const SlamLandmark& landmark = landmarks_[l];
-    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, position(l));
-    Eigen::Matrix2d base = e.by_pose * robot * e.by_pose.transpose();
-    if (landmark.slot) {
-      const Eigen::Matrix2d both = e.by_landmark * state_.cross(*landmark.slot) * e.by_pose.transpose();
-      base += both + both.transpose();
-    }
-    base += e.by_landmark * (landmark.slot ? state_.covariance(*landmark.slot) : landmark.covariance) *
-            e.by_landmark.transpose();
-    for (std::size_t k = 0; k < matches.size(); ++k) {
-      const SeenLandmark& s = seen.sightings[k];
-      if (!usable(s)) continue;
-      const Eigen::Vector2d v = innovation(s, e.value);
-      if (named(s)) {
-        if (landmark.key != s.identity) continue;
-        // An identity is accepted unless the landmark lies where it cannot be.
-        const Eigen::Matrix2d wide = base + sensor_noise(s);
-        const double squares = squared_distance(s, v, wide);
-        lowest[k] = squares, closest[k] = 0;
-        if (squares < options_.fresh) pairs.push_back({squares, k, l});
-        continue;
-      }
-      if (options_.identification.use_identities && landmark.key && !landmark.was_mapped) continue;
-      if (!s.bearing && !landmark.was_mapped) continue;  // many landmarks may lie on its circle
-      if (std::abs(v[0]) > 10 || std::abs(v[1]) > 1) continue;
-      const double features = feature_distance(s, landmark);
-      if (std::isinf(features)) {
-        differs[k] = true;
-        continue;
-      }
-      closest[k] = std::min(closest[k], std::hypot(v[0], v[1] * e.value[0]));
-      const Eigen::Matrix2d wide = base + sensor_noise(s);
-      const double squares = squared_distance(s, v, wide);
-      lowest[k] = std::min(lowest[k], squares);
-      if (landmark.was_mapped && in_map[k] != landmark.key) continue;
-      if (squares < options_.match) pairs.push_back({squares + std::max(features, 0.0), k, l});
-    }
-  }
-  std::ranges::sort(pairs, [](const Pair& a, const Pair& b) {
-    return std::tie(a.squares, a.sighting, a.landmark) < std::tie(b.squares, b.sighting, b.landmark);
-  });
-  std::vector<Pair> chosen;
-  std::vector<bool> used(matches.size(), false);
-  for (const Pair& p : pairs) {
-    if (found[p.landmark] || used[p.sighting]) continue;
-    found[p.landmark] = used[p.sighting] = true;
-    chosen.push_back(p);
-  }
-  chosen = jointly_compatible(seen, std::move(chosen));
-  found.assign(found.size(), false);
-  for (const Pair& p : chosen) {
-    found[p.landmark] = true;
-    matches[p.sighting].verdict = Verdict::matched;
-    matches[p.sighting].key = landmarks_[p.landmark].key.value_or(p.landmark + 1);
-    matches[p.sighting].pairing.squares = p.squares;
-    if (landmarks_[p.landmark].was_mapped) {
-      matches[p.sighting].at = landmarks_[p.landmark].at;
-      matches[p.sighting].covariance = landmarks_[p.landmark].covariance;
-    }
-    last_[p.sighting] = p.landmark;
-  }
-  match(seen, chosen);
-  update_existence(near, found);
-  std::vector<std::size_t> new_bearings;
-  for (std::size_t k = 0; k < matches.size(); ++k) {
-    const SeenLandmark& s = seen.sightings[k];
-    if (matches[k].verdict == Verdict::matched) continue;
-    const bool is_new = named(s) ? !landmark_by_key_.contains(*s.identity)
-                                 : lowest[k] > options_.fresh && (!s.range || closest[k] > options_.nearest);
-    if (!s.is_valid())
-      matches[k].verdict = Verdict::unsound;
-    else if (s.type == kNoSuchType)
-      matches[k].verdict = Verdict::unknown_type;
-    else if (!usable(s))
-      matches[k].verdict = Verdict::too_far;
-    else if (!s.range && is_new) {
-      new_bearings.push_back(k);
-      matches[k].verdict = Verdict::nothing_near;
-    } else if (!s.bearing && is_new) {  // its position is not known
-      ++unplaced_ranges_;
-      matches[k].verdict = Verdict::nothing_near;
-    } else if (is_new) {
-      add(s, seen.robot_from_sensor);
-      last_[k] = landmarks_.size() - 1;
-      matches[k].verdict = differs[k] ? Verdict::features_differ : Verdict::nothing_near;
-    } else {
-      matches[k].verdict = named(s) ? Verdict::too_far : Verdict::ambiguous;
-    }
-  }
-  for (const BearingStarts::Start& start :
-       starts_.add(seen, new_bearings, options_.identification.use_identities)) {
-    add(start, seen);
-    last_[start.sighting] = landmarks_.size() - 1;
-  }
-  if (search_) check_relocalization(set, near, found);
+  match(seen, pair_one_to_one(std::move(found.pairs)), matches);
+  std::vector<bool> is_found(landmarks_.size(), false);
+  for (const std::optional<std::size_t>& landmark : last_)
+    if (landmark) is_found[*landmark] = true;
+  update_existence(near, is_found);
+  add_new(seen, found.comparisons, matches);
+  if (search_) check_relocalization(set, near, is_found);
   return matches;
 }
 
-SlamState::Correction EkfSlam::correction(const SightingSet& seen, const Pair& pair) {
+SlamState::Correction EkfSlam::correction(const SightingSet& seen, const SlamPair& pair) {
   SlamLandmark& l = landmarks_[pair.landmark];
   const SeenLandmark& s = seen.sightings[pair.sighting];
   if (!l.slot) {
@@ -337,37 +215,20 @@ SlamState::Correction EkfSlam::correction(const SightingSet& seen, const Pair& p
   return c;
 }
 
-// Removes the pair without which the others agree best, until they agree.
-std::vector<EkfSlam::Pair> EkfSlam::jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen) {
+// Corrects the state by the pairs that agree with each other.
+void EkfSlam::match(const SightingSet& seen, std::vector<SlamPair> pairs, std::vector<Match>& matches) {
   std::vector<SlamState::Correction> corrections;
-  int rows = 0;
-  for (const Pair& p : chosen) {
-    corrections.push_back(correction(seen, p));
-    rows += seen.sightings[p.sighting].has_position() ? 2 : 1;
-  }
-  while (chosen.size() > 1 &&
-         state_.joint_squares(corrections) > chi_square_quantile(kJointGate, static_cast<double>(rows))) {
-    std::size_t worst = 0;
-    double lowest = std::numeric_limits<double>::infinity();
-    for (std::size_t k = 0; k < chosen.size(); ++k) {
-      std::vector<SlamState::Correction> rest = corrections;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(k));
-      if (const double squares = state_.joint_squares(rest); squares < lowest) lowest = squares, worst = k;
-    }
-    rows -= seen.sightings[chosen[worst].sighting].has_position() ? 2 : 1;
-    chosen.erase(chosen.begin() + static_cast<std::ptrdiff_t>(worst));
-    corrections.erase(corrections.begin() + static_cast<std::ptrdiff_t>(worst));
-  }
-  return chosen;
-}
-
-void EkfSlam::match(const SightingSet& seen, const std::vector<Pair>& chosen) {
-  std::vector<SlamState::Correction> corrections;
-  for (const Pair& p : chosen) {
-    const SlamState::Correction c = correction(seen, p);
+  for (const SlamPair& p : pairs) corrections.push_back(correction(seen, p));
+  remove_incompatible(state_, seen.sightings, pairs, corrections);
+  for (const SlamPair& p : pairs) {
     SlamLandmark& l = landmarks_[p.landmark];
     const SeenLandmark& s = seen.sightings[p.sighting];
-    corrections.push_back(c);
+    last_[p.sighting] = p.landmark;
+    Match& m = matches[p.sighting];
+    m.verdict = Verdict::matched;
+    m.key = l.key.value_or(p.landmark + 1);
+    m.pairing.squares = p.squares;
+    if (l.was_mapped) m.at = l.at, m.covariance = l.covariance;
     l.log_odds = std::min(l.log_odds + options_.seen, kSurestLogOdds);
     ++l.matches;
     if (!l.type) l.type = s.type;
@@ -377,6 +238,46 @@ void EkfSlam::match(const SightingSet& seen, const std::vector<Pair>& chosen) {
     }
   }
   state_.update(corrections);
+}
+
+// Starts landmarks by the sightings that show none, and gives the other unmatched ones their verdicts.
+void EkfSlam::add_new(const SightingSet& seen, std::span<const SlamComparison> comparisons,
+                      std::vector<Match>& matches) {
+  std::vector<std::size_t> new_bearings;
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    const SeenLandmark& s = seen.sightings[k];
+    Verdict& verdict = matches[k].verdict;
+    if (verdict == Verdict::matched) continue;
+    const bool is_named = is_identified(s, options_);
+    const SlamComparison& c = comparisons[k];
+    const bool is_new =
+        is_named ? !landmark_by_key_.contains(*s.identity)
+                 : c.min_squares > options_.fresh && (!s.range || c.min_distance > options_.nearest);
+    if (!s.is_valid()) {
+      verdict = Verdict::unsound;
+    } else if (s.type == kNoSuchType) {
+      verdict = Verdict::unknown_type;
+    } else if (!is_usable(s, options_)) {
+      verdict = Verdict::too_far;
+    } else if (!is_new) {
+      verdict = is_named ? Verdict::too_far : Verdict::ambiguous;
+    } else if (s.has_position()) {
+      add(s, seen.robot_from_sensor);
+      last_[k] = landmarks_.size() - 1;
+      verdict = c.features_differ ? Verdict::features_differ : Verdict::nothing_near;
+    } else {  // its position is not known yet
+      verdict = Verdict::nothing_near;
+      if (s.range)
+        ++unplaced_ranges_;
+      else
+        new_bearings.push_back(k);
+    }
+  }
+  for (const BearingStarts::Start& start :
+       starts_.add(seen, new_bearings, options_.identification.use_identities)) {
+    add(start, seen);
+    last_[start.sighting] = landmarks_.size() - 1;
+  }
 }
 
 void EkfSlam::add(const SeenLandmark& seen, const Pose2& mount) {
@@ -417,9 +318,11 @@ void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   landmarks_.push_back(std::move(fresh));
 }
 
-void EkfSlam::update_existence(const std::vector<Near>& near, const std::vector<bool>& found) {
+void EkfSlam::update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found) {
   const double unseen = unseen_evidence(detection(), options_.unseen);
-  for (const auto& [i, is_expected] : near) {
+  for (const SlamCandidate& candidate : near) {
+    const std::size_t i = candidate.landmark;
+    const bool is_expected = candidate.is_expected;
     SlamLandmark& l = landmarks_[i];
     if (found[i] || is_expected) ++l.expected;
     if (is_expected && l.log_odds >= options_.confirmed) hits_ += found[i], ++chances_;

@@ -7,56 +7,18 @@
 #include <optional>
 #include <unordered_map>
 #include <vector>
-#include "core/options.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
-#include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/identification/landmark_matcher.hpp"
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/slam/bearing_starts.hpp"
+#include "localization/slam/slam_association.hpp"
+#include "localization/slam/slam_landmark.hpp"
+#include "localization/slam/slam_options.hpp"
 #include "localization/slam/slam_relocalization.hpp"
 #include "localization/slam/slam_state.hpp"
 namespace waymark::localization {
-
-/// Options of EKF SLAM.
-struct SlamOptions {
-  double match = 9.21;    ///< gate: squared Mahalanobis distance up to which a sighting matches
-  double fresh = 25;      ///< distance beyond which it is a new landmark; between the two it is ambiguous
-  double nearest = 2;     ///< m: smallest distance of a new landmark to another
-  double max_range = 40;  ///< m; sightings farther away are not used
-  double seen = 0.85;     ///< log odds that a match adds to a landmark's existence
-  double unseen = -0.5;   ///< log odds, at most, that a missed detection adds
-  double confirmed = 2;   ///< log odds from which a landmark is written to a map
-  double dropped = -1;    ///< log odds below which it is removed
-  double field_of_view = 1.4;            ///< rad to each side where sightings are expected
-  double margin = 15;                    ///< m driven between two updates of the landmarks out of sight
-  double feature_tolerance = 0.15;       ///< relative standard deviation between two sightings
-  double feature_limit = 9;              ///< squared standard deviations by which a feature may differ
-  IdentificationOptions identification;  ///< its quality floor and use of identities; described by its owner
-
-  void describe(OptionVisitor& option);
-};
-
-/// A landmark of the SLAM filter.
-struct SlamLandmark {
-  Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
-  double log_odds = 0;  ///< of its existence: the evidence counter of section 4.4
-  std::int64_t matches = 0;
-  std::int64_t expected = 0;       ///< sets of sightings that should have shown it, matched ones included
-  std::optional<LandmarkKey> key;  ///< of the map's landmark, or of the identity it was seen with
-  bool gone = false;               ///< removed because the evidence says it does not exist
-  bool was_mapped = false;         ///< it was in the initial map
-  std::optional<TypeId> type;
-  double quality = 1;        ///< of the map's landmark: probability that it exists
-  double noise_divisor = 1;  ///< of the noise of its sightings (section 4.3); 1 unless `quality=paper`
-  KnownFeatures features;    ///< the signature
-  std::vector<KnownFeatures>
-      feature_samples;                  ///< features of each match, for the map's statistics; at most 100
-  std::size_t index = 0;                ///< constant while the filter lives
-  std::optional<SlamState::Slot> slot;  ///< absent: known from the map and not seen yet
-};
 
 /// EKF SLAM (section 4.4; Smith, Self & Cheeseman 1990) on the compressed filter SlamState. 0.2 ms per scan
 /// of 8 stems among 100 landmarks in reach.
@@ -104,14 +66,6 @@ class EkfSlam final : public Localizer {
   double detection() const { return (1 + hits_) / (2 + chances_); }
 
  private:
-  struct Pair {
-    double squares;
-    std::size_t sighting, landmark;
-  };
-  struct Near {
-    std::size_t landmark;
-    bool expected;
-  };
   static constexpr double kPrecise = 1;  // m, standard deviation of a position
   static constexpr double kOutdone = 2;  // ratio of two such deviations
   static double position_sd(const PoseEstimate& e) {
@@ -120,22 +74,24 @@ class EkfSlam final : public Localizer {
   void apply_pending_motion();
   void focus();
   double reach() const;
-  std::vector<Near> landmarks_in_reach(const SightingSet& seen) const;
-  double feature_distance(const SeenLandmark& seen, const SlamLandmark& landmark) const;
+  void note_reach(const SightingSet& seen);
+  SightingSet with_features_in_map(SightingSet seen) const;
+  std::vector<SlamCandidate> landmarks_in_reach(const SightingSet& seen) const;
   std::vector<std::optional<LandmarkKey>> identify_in_map(const SightingSet& seen);
   void start_tracker(const PoseEstimate& at);
   std::optional<PoseEstimate> contradiction() const;
   bool is_outdone() const;
   PoseEstimate own_estimate() const;
-  SlamState::Correction correction(const SightingSet& seen, const Pair& pair);
-  std::vector<Pair> jointly_compatible(const SightingSet& seen, std::vector<Pair> chosen);
-  void match(const SightingSet& seen, const std::vector<Pair>& chosen);
+  SlamState::Correction correction(const SightingSet& seen, const SlamPair& pair);
+  void match(const SightingSet& seen, std::vector<SlamPair> pairs, std::vector<Match>& matches);
+  void add_new(const SightingSet& seen, std::span<const SlamComparison> comparisons,
+               std::vector<Match>& matches);
   void add(const SeenLandmark& seen, const Pose2& mount);
   void add(const BearingStarts::Start& start, const SightingSet& seen);
   void append(SlamLandmark fresh, const SeenLandmark& seen);
-  void update_existence(const std::vector<Near>& near, const std::vector<bool>& found);
+  void update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found);
   Eigen::Vector2d position(std::size_t landmark) const;
-  void check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
+  void check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,
                             const std::vector<bool>& found);
   bool is_of_map(std::size_t sighting) const { return last_[sighting] && *last_[sighting] < map_.size(); }
   void compare_with_rival(const SightingSet& seen);

@@ -160,13 +160,14 @@ LocalizationStatus EkfSlam::status() const {
   return search_ && search_->lost() ? LocalizationStatus::lost : LocalizationStatus::tracking;
 }
 
-void EkfSlam::check_relocalization(const SightingSet& seen, const std::vector<Near>& near,
+void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,
                                    const std::vector<bool>& found) {
   SetEvidence evidence = in_map_;
-  for (const auto& [i, is_expected] : near) {
+  for (const SlamCandidate& candidate : near) {
+    const std::size_t i = candidate.landmark;
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
-    evidence.expected += is_expected;
-    evidence.found += is_expected && found[i];
+    evidence.expected += candidate.is_expected;
+    evidence.found += candidate.is_expected && found[i];
     evidence.matched += found[i];
   }
   if (rival_) compare_with_rival(seen);
