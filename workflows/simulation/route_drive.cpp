@@ -48,6 +48,55 @@ std::vector<testbed::DriveStep> planned_steps(const geo::Terrain& terrain,
   return steps;
 }
 
+/// Returns the stations of a route in the grid of a log, metres.
+std::vector<Eigen::Vector2d> path_in_grid(const std::vector<RoutePoint>& stations, const RobotMap& map,
+                                          const testbed::LogCrs& place) {
+  std::vector<Eigen::Vector2d> path;
+  for (const RoutePoint& station : stations)
+    path.push_back(map.frame.crs_from_map_frame({{station.at.x(), station.at.y(), 0}}).xyz.head<2>() *
+                   place.metres_per_unit);
+  return path;
+}
+
+/// Why a drive ends before its goal.
+struct Mishap {
+  std::string kind, reason;
+};
+
+/// Returns what the truth does to a vehicle. `is_driving`: it did not decide to stop.
+std::optional<Mishap> find_mishap(const testbed::Scene& scene, const planning::Vehicle& vehicle,
+                                  const testbed::VehicleMotion& motion, bool is_driving, double max_seconds) {
+  const testbed::DriveStep& now = motion.now();
+  const double steepest = std::max(std::abs(now.at.pitch), std::abs(now.at.roll)) / kRadiansPerDegree;
+  if (const std::int64_t rock = touched_rock(scene, now.at.plane, vehicle); rock >= 0) {
+    const testbed::TrueRock& hit = scene.rocks[static_cast<std::size_t>(rock)];
+    return Mishap{"contact", fmt::format("a rock of {:.2f} m height at {:.1f}, {:.1f}", hit.height,
+                                         hit.position.x(), hit.position.y())};
+  }
+  if (const std::string mishap = motion.mishap(); !mishap.empty())
+    return Mishap{mishap == "stuck" ? "stuck" : "tipped_over", "the vehicle is " + mishap};
+  if (is_driving && steepest > vehicle.max_slope.value)
+    return Mishap{"too_steep", fmt::format("the slope of {:.0f} deg exceeds the vehicle's {:.0f}", steepest,
+                                           vehicle.max_slope.value)};
+  if (is_driving && now.t > max_seconds) return Mishap{"time", "ten times the time of the plan has passed"};
+  return std::nullopt;
+}
+
+/// Compares the estimated track with the true steps.
+void score_against_steps(DriveReport& report, const localization::Track& track,
+                         std::span<const testbed::DriveStep> steps, const testbed::LogCrs& place,
+                         const geo::LocalFrame& frame) {
+  report.seconds = steps.back().t, report.driven = steps.back().distance;
+  localization::RobotLog truth;
+  truth.in_crs = place.crs != "local";
+  for (const testbed::DriveStep& step : steps)
+    truth.truth.push_back({step.t,
+                           {step.at.plane.x / place.metres_per_unit, step.at.plane.y / place.metres_per_unit,
+                            step.at.plane.yaw}});
+  localization::convert_to_map_frame(truth, frame);
+  score_drive(report, track, truth.truth);
+}
+
 }  // namespace
 
 RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& scene,
@@ -62,11 +111,7 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
   const OpenedMap opened = open_robot_map(map_file, sensor.get());
   const RobotMap& map = opened.map;
   const std::vector<RoutePoint> stations = read_route(route_file, map);
-  const auto grid = [&](const Eigen::Vector2d& at) -> Eigen::Vector2d {
-    return map.frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.head<2>() * place.metres_per_unit;
-  };
-  std::vector<Eigen::Vector2d> planned;
-  for (const RoutePoint& station : stations) planned.push_back(grid(station.at));
+  const std::vector<Eigen::Vector2d> planned = path_in_grid(stations, map, place);
   const Eigen::Vector2d first = planned[0], along = planned[1] - first;
   const Pose2 start{first.x(), first.y(), std::atan2(along.y(), along.x())};
   if (!scene.terrain.height(start.x, start.y))
@@ -120,24 +165,11 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
       if (live.replay().track().updates > sets) navigator.look(now.t);
     }
     auto command = navigator.decide(now.t, now.distance);
-    const auto end = [&](const std::string& kind, const std::string& reason) {
-      report.ended = kind, report.reached = false;
-      report.events.push_back({now.t, live.localizer().estimate().pose.at(), "ended", reason});
+    if (const auto mishap = find_mishap(scene, vehicle, *motion, command.has_value(), max_seconds)) {
+      report.ended = mishap->kind, report.reached = false;
+      if (mishap->kind == "contact") report.contact = mishap->reason;
+      report.events.push_back({now.t, live.localizer().estimate().pose.at(), "ended", mishap->reason});
       command.reset();
-    };
-    const double steepest = std::max(std::abs(now.at.pitch), std::abs(now.at.roll)) / kRadiansPerDegree;
-    if (const std::int64_t rock = touched_rock(scene, now.at.plane, vehicle); rock >= 0) {
-      const testbed::TrueRock& hit = scene.rocks[static_cast<std::size_t>(rock)];
-      report.contact = fmt::format("a rock of {:.2f} m height at {:.1f}, {:.1f}", hit.height,
-                                   hit.position.x(), hit.position.y());
-      end("contact", *report.contact);
-    } else if (const std::string mishap = motion->mishap(); !mishap.empty()) {
-      end(mishap == "stuck" ? "stuck" : "tipped_over", "the vehicle is " + mishap);
-    } else if (command && steepest > vehicle.max_slope.value) {
-      end("too_steep", fmt::format("the slope of {:.0f} deg exceeds the vehicle's {:.0f}", steepest,
-                                   vehicle.max_slope.value));
-    } else if (command && now.t > max_seconds) {
-      end("time", "ten times the time of the plan has passed");
     }
     const testbed::DriveStep done = command ? motion->step(*command) : now;
     steps.push_back(done);
@@ -152,16 +184,8 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
     report.goal_distance = (at - stations.back().at).norm();
   }
   if (hazards) report.keep_out = keep_out;
-  report.seconds = steps.back().t, report.driven = steps.back().distance;
   drive.track = live.replay().track();
-  localization::RobotLog truth;
-  truth.in_crs = place.crs != "local";
-  for (const testbed::DriveStep& step : steps)
-    truth.truth.push_back({step.t,
-                           {step.at.plane.x / place.metres_per_unit, step.at.plane.y / place.metres_per_unit,
-                            step.at.plane.yaw}});
-  localization::convert_to_map_frame(truth, map.frame);
-  score_drive(report, drive.track, truth.truth);
+  score_against_steps(report, drive.track, steps, place, map.frame);
   testbed::DriveWorld driven = world;
   driven.steps = std::move(steps);
   drive.true_track = testbed::true_track(driven, place);
