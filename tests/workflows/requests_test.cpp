@@ -96,6 +96,8 @@ TEST(TreeStages, CanopyIsRastersOrPoints) {
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {}); }), HasSubstr("no canopy is given"));
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {.chm = {"a.tif"}, .las = {"a.las"}}); }),
               HasSubstr("--las is given together with rasters"));
+  EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {.dtm = {"a.tif"}}); }),
+              HasSubstr("--dtm is given without --dsm or --las"));
 }
 
 TEST(Detect, UnknownKindNamesTheNearest) {
