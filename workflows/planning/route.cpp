@@ -14,6 +14,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
@@ -130,8 +131,11 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
     const localization::Pose2 pose = planning::heading_pose(x, y, node.heading);
     const planning::Information& seen = problem.field.get(node.cell, node.heading);
     if (seen.landmarks == 0) route.without_landmarks += length;
-    route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance, pose.yaw,
-                              node.covariance, position_sd(node.covariance), seen.landmarks,
+    const double rotation = grid_rotation(map.frame, {x, y});
+    route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance,
+                              localization::wrap_angle(pose.yaw + rotation),
+                              planning::symmetric(rotate_covariance(node.covariance.matrix(), rotation)),
+                              position_sd(node.covariance), seen.landmarks,
                               important_landmarks(planner, uids, pose)});
   }
   route.final_sd = route.stations.back().sd;

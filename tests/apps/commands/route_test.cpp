@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
+#include <vector>
 
 #include "tests/apps/made_dem.hpp"
 #include "tests/apps/program.hpp"
