@@ -124,6 +124,9 @@ TEST(Inventory, StandsOrGrid) {
   request.stands = "stands.geojson";
   request.grid = 100;
   EXPECT_THAT(usage_error([&] { inventory(request); }), HasSubstr("--stands and --grid exclude each other"));
+  request.stands.clear(), request.grid = 0, request.stands_layer = "compartments";
+  EXPECT_THAT(usage_error([&] { inventory(request); }),
+              HasSubstr("--stands-layer names a layer of --stands"));
 }
 
 TEST(Train, CratersTakeNoImages) {

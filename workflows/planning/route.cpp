@@ -19,6 +19,7 @@
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
+#include "planning/vehicle.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/leg_planner.hpp"
 #include "workflows/planning/path_clearance.hpp"
@@ -47,6 +48,10 @@ void check(const RouteRequest& request) {
   if (objectives != 1)
     refuse(objectives ? "more than one objective is given" : "the route has no objective",
            "pass one of --limit-sigma M, --keep-landmarks N, --weight W, --least-sigma");
+  if (request.by_quality && !(request.keep_landmarks > 0))
+    refuse("--by-quality is about the landmarks to keep in sight",
+           "pass --keep-landmarks N, or leave it out");
+  static_cast<void>(planning::find_vehicle(request.vehicle));  // throws for an unknown one
   check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.speed > 0)) refuse(fmt::format("--speed {:g} is not above 0 m/s", request.speed), "");
   if (request.worlds < 1 || request.alternatives < 1)
