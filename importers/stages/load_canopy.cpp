@@ -64,7 +64,7 @@ struct LoadCanopy {
   static pipeline::StageSpec spec() {
     return {.name = "load_canopy",
             .summary = "Opens canopy height models, or surface and terrain models, and cuts them into tiles",
-            .version = 2,
+            .version = 3,
             .scope = pipeline::Scope::map,
             .lists = pipeline::Scope::tile,
             .outputs = {dem, canopies, tiles}};

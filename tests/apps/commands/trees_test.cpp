@@ -68,7 +68,7 @@ TEST_F(Trees, OfAFolderOfCompressedPoints) {
   write_text(folder + "/west.laz", laz_bytes(west));
   write_text(folder + "/east.copc.laz", copc_bytes(east, 3));
   ASSERT_EQ(trees({"--las", folder}).code, 0);
-  MadeDem level{.columns = 100, .rows = 100, .geotransform = {-10, 1, 0, 90, 0, -1}};
+  MadeDem level{.columns = 100, .rows = 100, .geotransform = {499990, 1, 0, 5000090, 0, -1}};
   level.height = [](int, int) { return 0.0; };
   const Outcome above =
       trees({"--las", folder, "--dtm", make_dem(folder_ / "dtm.tif", level), "--crs", "local"}, "above.gpkg");
