@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <numbers>
 #include <span>
 
@@ -113,22 +114,30 @@ std::int64_t RouteCells::index(double px, double py) const {
 }
 
 void visit_cells(const RouteCells& cells, const std::vector<char>& passable,
-                 const std::function<void(std::int64_t cell)>& visit) {
+                 const std::function<void(std::int64_t cell)>& visit, const Advanced& advanced) {
+  std::mutex mutex;
+  std::int64_t rows = 0;
   tbb::parallel_for(std::int64_t{0}, cells.rows, [&](std::int64_t row) {
     for (std::int64_t i = row * cells.columns; i < (row + 1) * cells.columns; ++i)
       if (passable[static_cast<std::size_t>(i)]) visit(i);
+    if (!advanced) return;
+    const std::scoped_lock lock(mutex);
+    advanced(static_cast<double>(++rows) / static_cast<double>(cells.rows));
   });
 }
 
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
-                                        const localization::LandmarkGrid& map,
-                                        const LandmarkSensing& sensing) {
+                                        const localization::LandmarkGrid& map, const LandmarkSensing& sensing,
+                                        const Advanced& advanced) {
   InformationField field{cells, informative_headings(sensing), {}};
   field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
-  visit_cells(cells, passable, [&](std::int64_t i) {
-    const auto here = information_in_directions({cells.x(i), cells.y(i)}, field.headings, map, sensing);
-    std::copy_n(here.begin(), field.headings, field.at.begin() + i * field.headings);
-  });
+  visit_cells(
+      cells, passable,
+      [&](std::int64_t i) {
+        const auto here = information_in_directions({cells.x(i), cells.y(i)}, field.headings, map, sensing);
+        std::copy_n(here.begin(), field.headings, field.at.begin() + i * field.headings);
+      },
+      advanced);
   return field;
 }
 

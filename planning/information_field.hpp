@@ -81,13 +81,16 @@ struct InformationField {
     return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
   }
 };
-/// Calls `visit` for each passable cell. Rows run in parallel.
+/// Receives the fraction of a computation that is done, from one thread at a time; may throw to end it.
+using Advanced = std::function<void(double done)>;
+
+/// Calls `visit` for each passable cell. Rows run in parallel; `advanced` is called after each.
 void visit_cells(const RouteCells& cells, const std::vector<char>& passable,
-                 const std::function<void(std::int64_t cell)>& visit);
+                 const std::function<void(std::int64_t cell)>& visit, const Advanced& advanced = {});
 
 /// Computes the field of the cells that are `passable`; others are empty. Threads do not change it.
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
-                                        const localization::LandmarkGrid& map,
-                                        const LandmarkSensing& sensing);
+                                        const localization::LandmarkGrid& map, const LandmarkSensing& sensing,
+                                        const Advanced& advanced = {});
 
 }  // namespace waymark::planning

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <algorithm>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -16,6 +17,26 @@ struct RouteProblem {
   Symmetric3 start;                 ///< covariance at the start
   std::vector<double> to_go = {};   ///< distances_to(`to`); empty: each search computes them
   std::vector<double> min_sd = {};  ///< relaxed_sd() without a limit; empty: weighted searches compute it
+  /// Called now and then during a search, and while a route is followed; most searches end before 1.
+  Advanced advanced = {};
+};
+
+/// Reports the work of a search to RouteProblem::advanced, once for many steps.
+class SearchProgress {
+ public:
+  /// `max_steps`: number of steps after which the search is taken to be done.
+  SearchProgress(const RouteProblem& problem, std::int64_t max_steps)
+      : advanced_(problem.advanced), max_steps_(max_steps) {}
+
+  void step() {
+    if (advanced_ && ++steps_ % kInterval == 0)
+      advanced_(std::min(1.0, static_cast<double>(steps_) / static_cast<double>(max_steps_)));
+  }
+
+ private:
+  static constexpr std::int64_t kInterval = 4096;  // milliseconds
+  const Advanced& advanced_;
+  std::int64_t max_steps_, steps_ = 0;
 };
 
 /// Returns the index of a cell, or of a cell and heading, as containers take it.

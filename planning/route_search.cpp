@@ -106,7 +106,10 @@ std::optional<Route> search_by_sigma(const RouteProblem& problem, const SigmaSea
   };
   for (int h = 0; h < kHeadings; ++h)
     if (!problem.heading || *problem.heading == h) push({problem.start, 0, 0, first_sd, problem.from, -1, h});
+  SearchProgress progress(problem, std::min(static_cast<std::int64_t>(search.max_labels),
+                                            cells.count() * kHeadings * search.labels));
   while (!open.empty()) {
+    progress.step();
     const std::int32_t at = open.top().second;
     open.pop();
     const Label label = labels[slot(at)];
@@ -151,7 +154,9 @@ std::optional<Route> search_by_landmarks(const RouteProblem& problem, double cou
       open.emplace(best[slot(node)], node);
     }
   std::int64_t last = -1;
+  SearchProgress progress(problem, cells.count() * kHeadings);
   while (!open.empty()) {
+    progress.step();
     const auto [cost, node] = open.top();
     open.pop();
     if (cost > best[slot(node)]) continue;

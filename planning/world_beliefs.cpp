@@ -74,24 +74,27 @@ std::vector<double> WorldBeliefs::position_sds() const {
 
 std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::vector<char>& passable,
                                           const localization::LandmarkGrid& map,
-                                          const LandmarkSensing& sensing) {
+                                          const LandmarkSensing& sensing, const Advanced& advanced) {
   std::vector<double> max_rates(slot(cells.count()), 0);
   const int headings = informative_headings(sensing);
-  visit_cells(cells, passable, [&](std::int64_t cell) {
-    const Eigen::Vector2d at(cells.x(cell), cells.y(cell));
-    std::array<Symmetric3, kHeadings> sums{};
-    visit_directions(at, headings, map, sensing,
-                     [&](std::uint32_t i, const Symmetric3& information, unsigned seen_in) {
-                       const double detection =
-                           detection_probability(sensing.coverage, (map[i].at - at).norm(), map[i].diameter);
-                       if (!(detection > 0)) return;
-                       for (int h = 0; h < headings; ++h)
-                         if (seen_in >> h & 1)
-                           add(sums[slot(h)], information, 1 - kRepeated + kRepeated / detection);
-                     });
-    for (int h = 0; h < headings; ++h)
-      max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sums[slot(h)]));
-  });
+  visit_cells(
+      cells, passable,
+      [&](std::int64_t cell) {
+        const Eigen::Vector2d at(cells.x(cell), cells.y(cell));
+        std::array<Symmetric3, kHeadings> sums{};
+        visit_directions(at, headings, map, sensing,
+                         [&](std::uint32_t i, const Symmetric3& information, unsigned seen_in) {
+                           const double detection = detection_probability(
+                               sensing.coverage, (map[i].at - at).norm(), map[i].diameter);
+                           if (!(detection > 0)) return;
+                           for (int h = 0; h < headings; ++h)
+                             if (seen_in >> h & 1)
+                               add(sums[slot(h)], information, 1 - kRepeated + kRepeated / detection);
+                         });
+        for (int h = 0; h < headings; ++h)
+          max_rates[slot(cell)] = std::max(max_rates[slot(cell)], max_rate(sums[slot(h)]));
+      },
+      advanced);
   return max_rates;
 }
 
@@ -102,6 +105,7 @@ std::vector<double> follow_route(WorldBeliefs& beliefs, const RouteProblem& prob
   std::vector<double> worst = beliefs.position_sds();
   route.worst_sd = 0;
   for (std::size_t i = 0; i < route.nodes.size(); ++i) {
+    if (problem.advanced) problem.advanced(static_cast<double>(i) / static_cast<double>(route.nodes.size()));
     RouteNode& node = route.nodes[i];
     const localization::Pose2 pose = heading_pose(cells.x(node.cell), cells.y(node.cell), node.heading);
     const std::int64_t before = i > 0 ? route.nodes[i - 1].cell : node.cell;

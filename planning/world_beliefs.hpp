@@ -42,7 +42,7 @@ class WorldBeliefs {
 /// landmarks exist and are seen well.
 std::vector<double> max_rate_in_any_world(const RouteCells& cells, const std::vector<char>& passable,
                                           const localization::LandmarkGrid& map,
-                                          const LandmarkSensing& sensing);
+                                          const LandmarkSensing& sensing, const Advanced& advanced = {});
 
 /// Follows a route, whose covariances become those over all worlds. Returns the largest sd in each world.
 std::vector<double> follow_route(WorldBeliefs& beliefs, const RouteProblem& problem,

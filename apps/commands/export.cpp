@@ -9,6 +9,7 @@
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/postgres_map.hpp"
 #include "workflows/localization/export_robot_map.hpp"
+#include "workflows/query/area_of_map.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::apps {
@@ -40,6 +41,9 @@ class Export final : public Command {
                           .offering({"GPKG", "GeoJSON", "KML", "CSV", "FlatGeobuf", "beluga", "MRPT"}),
                       Argument{"--type", "T", &options_.types, "Landmarks of this type only; may be repeated"}
                           .offering(workflows::all_types().names()),
+                      Argument{"--aoi", "POLYGONS", &aoi_,
+                               "Landmarks inside this area only; a .gpkg is then a map of the area"}
+                          .offering(Offer::file),
                       Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
                       Argument{"--area", "KM2", &options_.area_km2,
                                "Counting area of a crater count (.scc, .diam)"}
@@ -56,6 +60,7 @@ class Export final : public Command {
             {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
              "A table in UTM metres"},
             {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+            {"waymark export forest.gpkg parcel.gpkg --aoi parcel.geojson", "A map of a part of the area"},
             {"waymark export alps.gpkg alps.sqlite", "SQLite, with geometries and indexes of SpatiaLite"},
             {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
              "A table with a label for the Planetary Data System"},
@@ -67,6 +72,7 @@ class Export final : public Command {
   int run(const Session&) override {
     if (geodb::postgres::is_address(out_)) return export_to_server();
     if (const auto format = workflows::parse_robot_format(options_.driver)) return export_to_robot(*format);
+    if (!aoi_.empty()) options_.inside = workflows::area_of_map(aoi_, map_).contains;
     const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
     for (const exporters::ExportedLayer& layer : done.layers)
@@ -81,6 +87,7 @@ class Export final : public Command {
       throw Error(ErrorCode::usage,
                   "a robot's landmark list is in metres of the local frame: --crs does not apply", out_,
                   "leave it out");
+    refuse_others("a robot's landmark list");
     const std::int64_t count = workflows::export_robot_map({.map = map_,
                                                             .output = out_,
                                                             .format = format,
@@ -95,6 +102,7 @@ class Export final : public Command {
       throw Error(ErrorCode::usage,
                   "a database stores the whole map: --type, --crs and --format do not apply", out_,
                   "leave them out");
+    refuse_others("a database");
     const geodb::PostgresSummary done = geodb::export_to_postgres(map_, out_);
     log_summary(
         fmt::format("{} landmarks {}\n", done.landmarks, done.created ? "stored" : "added or updated"));
@@ -103,7 +111,16 @@ class Export final : public Command {
     return 0;
   }
 
-  std::string map_, out_;
+  /// Throws for options that these outputs do not have.
+  void refuse_others(const std::string& output) const {
+    if (!aoi_.empty())
+      throw Error(ErrorCode::usage, "--aoi does not apply to " + output, out_,
+                  "export the area to a .gpkg first, and that map then");
+    if (!options_.label.empty() || options_.area_km2 != 0)
+      throw Error(ErrorCode::usage, "--label and --area do not apply to " + output, out_, "leave them out");
+  }
+
+  std::string map_, out_, aoi_;
   exporters::ExportOptions options_;
 };
 

@@ -85,7 +85,8 @@ class Localize final : public Command {
                  "Ground of the map: gives the track its height, roll and pitch, and the search skylines"}
                  .offering(Offer::file)
                  .or_else("the map's own, if it has one"),
-             Argument{"--crs", "", &request_.in_map_crs, "Write positions of a .csv in the map's CRS"},
+             Argument{"--crs", "", &request_.in_map_crs,
+                      "Write positions and yaws of a .csv in the map's CRS"},
              Argument{"--layers", "MAP.gpkg", &request_.layers,
                       "Map file that gets the layers track and, of a harvester, harvested"}
                  .offering(Offer::file),

@@ -18,6 +18,7 @@ std::vector<Argument> query_arguments(workflows::QueryRequest& request) {
           .offering(workflows::all_types().names())
           .or_else("all"),
       {"--bbox", "X0 Y0 X1 Y1", &request.bbox, "Landmarks in this box; X0 > X1 crosses the antimeridian"},
+      Argument{"--aoi", "POLYGONS", &request.aoi, "Landmarks inside this area"}.offering(Offer::file),
       {"--near", "X Y RADIUS", &request.near, "Landmarks within RADIUS metres of X Y, nearest first"},
       {"--nearest", "X Y COUNT", &request.nearest, "The COUNT landmarks nearest to X Y"},
       {"--min", "FEATURE=VALUE", &request.min_features,

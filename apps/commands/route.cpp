@@ -29,7 +29,7 @@ class RouteCommand final : public Command {
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks"),
              Argument{"--from", "X,Y[,YAW]", &request_.from,
-                      "Start in the map's CRS; yaw in degrees from east"}
+                      "Start in the map's CRS; yaw in degrees from its x axis, in a CRS in degrees from east"}
                  .needed(),
              Argument{"--to", "X,Y", &request_.to, "Goal in the map's CRS"}.needed(),
              Argument{"--via", "X,Y", &request_.via, "Position to pass; may be repeated, in order"},

@@ -24,9 +24,10 @@ class Trees final : public Shortcut {
     std::vector<Argument> all{
         files("--chm", "CHM...", &files_.chm, "Canopy height models, heights above ground, that GDAL opens"),
         files("--dsm", "DSM...", &files_.dsm, "Surface models, with --dtm"),
-        files("--dtm", "DTM...", &files_.dtm, "Terrain models, on any grid"),
+        files("--dtm", "DTM...", &files_.dtm,
+              "Terrain models on any grid, under the surface or the laser points"),
         files("--las", "FILE...", &files_.las,
-              "LAS, LAZ or COPC files, or folders of them: one catalogue, ground classified")};
+              "LAS, LAZ or COPC files, or folders of them: one catalogue, with ground classified or --dtm")};
     all.push_back({"--flights", "", &files_.flights,
                    "Each file is a survey of its own: trees that several saw are merged and valued"});
     all.push_back({"--no-crowns", "", &no_crowns_, "Treetops alone: no crowns, no crown diameters"});
@@ -46,6 +47,8 @@ class Trees final : public Shortcut {
             {"waymark trees --dsm dsm.tif --dtm dtm.tif -o trees.gpkg", "Surface less terrain"},
             {"waymark trees --las flight_*.laz -o trees.gpkg", "From laser points: ground, canopy, trees"},
             {"waymark trees --las tiles/ -o trees.gpkg", "All LAS, LAZ and COPC files of a folder"},
+            {"waymark trees --las tiles/ --dtm official_dtm.tif -o trees.gpkg",
+             "Canopy of the points above a terrain model"},
             {"waymark trees --chm 2019.tif 2023.tif --flights -o trees.gpkg",
              "Two surveys of one forest: trees are merged and valued"},
             {"waymark trees --chm chm.tif -o trees.gpkg --allometry table.csv --species PIAB",

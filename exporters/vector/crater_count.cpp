@@ -155,6 +155,9 @@ ExportSummary export_crater_count(const fs::path& map_path, const std::string& o
   if (!options.crs.empty())
     throw Error(ErrorCode::usage, "a crater count has no CRS of its own", "--crs " + options.crs,
                 "leave --crs out: .scc holds longitude and latitude on the map's body");
+  if (options.inside)
+    throw Error(ErrorCode::usage, "a crater count needs all craters of its counting area", "--aoi",
+                "leave --aoi out");
   if (!options.overwrite && fs::exists(out))
     throw Error(ErrorCode::output, fmt::format("{} exists already", fs::path(out).filename().string()), out,
                 "remove it, choose another name, or allow it to be replaced with --overwrite");

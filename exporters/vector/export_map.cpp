@@ -32,6 +32,7 @@ struct Export {
   const geodb::MapStore& map;
   VectorFormat format;
   const Crs crs;
+  std::function<bool(double, double)> inside;
   ExportSummary summary;
 
   void warn(std::vector<std::string> texts) {
@@ -67,6 +68,8 @@ class TypeReader {
       for (const Landmark& landmark : found.landmarks) visit(landmark);
     };
     job_->map.visit(type_->name, [&](Landmark&& landmark) {
+      const Eigen::Vector3d& at = landmark.position.xyz;
+      if (job_->inside && !job_->inside(at.x(), at.y())) return;
       some.push_back(std::move(landmark));
       if (some.size() == kAtOnce) flush();
     });
@@ -176,7 +179,9 @@ constexpr std::size_t kLandmarksInMemory = 10'000;  // 1 to 2 kB each
 
 void write_map_file(Export& job, const std::vector<std::string>& types, const fs::path& out) {
   geodb::check_before_copy(job.map.path());
-  MapSubset subset = map_subset(job.map, types, job.crs);
+  const LandmarkChoice chosen{types, job.inside};
+  MapSubset subset = map_subset(job.map, chosen, job.crs);
+  subset.contents.layers = subset_layers(job.map, chosen, job.crs, subset.warnings);
   geodb::write_map(out, subset.contents,
                    {.empty_tables = types, .max_landmarks_in_memory = kLandmarksInMemory});
   job.summary.layers = std::move(subset.layers);
@@ -197,9 +202,12 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
   const VectorFormat format = vector_format(out, options.driver);
   if (!options.label.empty() && format.driver != kPds4)
     throw Error(ErrorCode::usage, format.driver + " has no label", "--label", "PDS4 has one: -of PDS4");
+  if (options.area_km2 != 0)
+    throw Error(ErrorCode::usage, format.driver + " has no counting area", "--area",
+                "crater counts have one: OUT.scc or OUT.diam");
   const geodb::MapStore map = geodb::MapStore::open(map_path);
   const auto types = chosen_types(map, options.types);
-  Export job{map, format, output_crs(format, map.crs(), options.crs, map_path.string()), {}};
+  Export job{map, format, output_crs(format, map.crs(), options.crs, map_path.string()), options.inside, {}};
   job.summary.driver = format.driver;
   job.summary.crs = job.crs.id();
 

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 namespace waymark::exporters {
@@ -12,6 +13,8 @@ struct ExportOptions {
   std::vector<std::string> types = {};  ///< landmark types; empty: all the map has
   std::string crs =
       {};  ///< any text Crs understands; empty: the map's, or EPSG:4326 if the format requires it
+  /// Whether the position of a landmark in the map's CRS is inside the area of interest; empty: everywhere.
+  std::function<bool(double x, double y)> inside = {};
   bool overwrite = false;               ///< false: an existing output is an error
   std::vector<std::string> label = {};  ///< values of a PDS4 label, "NAME=VALUE"
   /// That GDAL may take for a format it does not write in pieces: a FlatGeobuf that would take more has no
@@ -38,6 +41,7 @@ struct ExportSummary {
 /// Writes the landmarks of `map` as `out`, in any vector format of this GDAL.
 /// - The result is staged in the output's own folder and renamed, so a failure leaves an older output
 ///   unchanged. A `/vsi...` output is written in place.
+/// - A GeoPackage is a map again, with evidence, images, shape layers and the latest run of these landmarks.
 /// - Single-layer formats (CSV, Shapefile, FlatGeobuf, GeoJSON) get `out` for a map of one type and
 ///   `<stem>_<type>.<ext>` for each of several.
 /// Throws Error for an unknown type, driver or CRS; a format that cannot hold the CRS or points; a CRS of

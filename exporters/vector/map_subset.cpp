@@ -29,8 +29,9 @@ void reproject(std::vector<geodb::ImageRecord>& images, const Crs& from, const C
 /// Landmarks and observations of some types in another CRS, read from a map range by range.
 class SubsetReader {
  public:
-  SubsetReader(const geodb::MapStore& map, const TypeRegistry& types, const Crs& crs)
-      : map_(&map), types_(types), crs_(crs) {
+  SubsetReader(const geodb::MapStore& map, const TypeRegistry& types, const LandmarkChoice& chosen,
+               const Crs& crs)
+      : map_(&map), types_(types), chosen_(chosen), crs_(crs) {
     if (!map.crs().same_as(crs)) transform_.emplace(map.crs(), crs);
     for (TypeId id = 0; id < types.size(); ++id)
       for (const geodb::MapStore::RowRange& rows : map.row_ranges(types[id].name, kRows))
@@ -44,28 +45,37 @@ class SubsetReader {
     const LandmarkType& type = types_[id];
     std::vector<Landmark> found;
     map_->visit(type.name, rows, [&](Landmark&& landmark) {
+      if (!is_inside(landmark)) return;
       landmark.type = id;
       found.push_back(std::move(landmark));
     });
     return exporters::reproject(std::move(found), type, map_->crs(), crs_);
   }
 
-  /// Returns the number of landmarks of a type without a position in the CRS.
-  std::int64_t count_lost(TypeId type) const {
-    std::int64_t lost = 0;
-    for (std::size_t part = 0; part < parts(); ++part)
-      if (transform_ && ranges_[part].first == type) lost += landmarks(part).lost;
-    return lost;
+  /// Landmarks of a type that are chosen, and those of them without a position in the CRS.
+  struct Count {
+    std::int64_t kept = 0, lost = 0;
+  };
+  Count count(TypeId type) const {
+    Count all;
+    if (!transform_ && !chosen_.inside) return {map_->count(types_[type].name), 0};
+    for (std::size_t part = 0; part < parts(); ++part) {
+      if (ranges_[part].first != type) continue;
+      const Reprojected found = landmarks(part);
+      all.kept += static_cast<std::int64_t>(found.landmarks.size()), all.lost += found.lost;
+    }
+    return all;
   }
 
   std::vector<Observation> evidence(std::size_t part) const {
     std::vector<Observation> found;
     const auto& [id, rows] = ranges_[part];
-    std::unordered_set<std::string> uids;  // landmarks without a position in the CRS are left out
-    if (transform_)
+    const bool leaves_out = transform_ || chosen_.inside;
+    std::unordered_set<std::string> uids;  // of the landmarks that are kept
+    if (leaves_out)
       for (const Landmark& landmark : landmarks(part).landmarks) uids.insert(landmark.uid);
     map_->visit_observations(types_[id].name, rows, [&](Observation&& seen) {
-      if ((!transform_ || uids.contains(seen.landmark_uid)) && keep(seen)) found.push_back(std::move(seen));
+      if ((!leaves_out || uids.contains(seen.landmark_uid)) && keep(seen)) found.push_back(std::move(seen));
     });
     return found;
   }
@@ -74,7 +84,12 @@ class SubsetReader {
   std::vector<Observation> rejected() const {
     std::vector<Observation> found;
     map_->visit_rejected([&](Observation&& seen) {
-      if (!seen.landmark_uid.empty() && !map_->find(seen.landmark_uid)) return;
+      if (!seen.landmark_uid.empty()) {
+        const auto landmark = map_->find(seen.landmark_uid);
+        if (!landmark || !is_inside(*landmark)) return;
+      } else if (!is_inside(seen)) {
+        return;
+      }
       if (keep(seen)) found.push_back(std::move(seen));
     });
     return found;
@@ -82,6 +97,12 @@ class SubsetReader {
 
  private:
   static constexpr std::int64_t kRows = 10'000;  // of a part
+
+  /// Takes a landmark or an observation in the CRS of the map.
+  template <class Item>
+  bool is_inside(const Item& item) const {
+    return !chosen_.inside || chosen_.inside(item.position.xyz.x(), item.position.xyz.y());
+  }
 
   bool keep(Observation& seen) const {
     const std::string& type = map_->types()[seen.type].name;
@@ -96,6 +117,7 @@ class SubsetReader {
 
   const geodb::MapStore* map_;
   TypeRegistry types_;  ///< of the subset
+  LandmarkChoice chosen_;
   Crs crs_;
   std::optional<CrsTransform> transform_;
   std::vector<std::pair<TypeId, geodb::MapStore::RowRange>> ranges_;
@@ -103,18 +125,18 @@ class SubsetReader {
 
 }  // namespace
 
-MapSubset map_subset(const geodb::MapStore& map, const std::vector<std::string>& types, const Crs& crs) {
+MapSubset map_subset(const geodb::MapStore& map, const LandmarkChoice& chosen, const Crs& crs) {
   MapSubset subset;
   geodb::MapContents& contents = subset.contents;
   contents.crs = crs;
-  for (const std::string& name : types) contents.types.add(*map.types().find(name));
-  const auto reader = std::make_shared<SubsetReader>(map, contents.types, crs);
-  for (const std::string& name : types) {
-    const std::int64_t lost = reader->count_lost(contents.types.id(name));
-    subset.layers.push_back({name, map.count(name) - lost});
-    if (lost > 0)
+  for (const std::string& name : chosen.types) contents.types.add(*map.types().find(name));
+  const auto reader = std::make_shared<SubsetReader>(map, contents.types, chosen, crs);
+  for (const std::string& name : chosen.types) {
+    const SubsetReader::Count count = reader->count(contents.types.id(name));
+    subset.layers.push_back({name, count.kept});
+    if (count.lost > 0)
       subset.warnings.push_back(
-          fmt::format("{} {} landmarks have no position in {} and are left out", lost, name, crs.id()));
+          fmt::format("{} {} landmarks have no position in {} and are left out", count.lost, name, crs.id()));
   }
   contents.parts.count = reader->parts();
   contents.parts.landmarks = [reader](std::size_t part) {

@@ -17,6 +17,7 @@
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
 #include "exporters/vector/track_formats.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "geodb/replace_map.hpp"
 
@@ -41,16 +42,22 @@ bool knows_wrong_matches(const localization::Track& track) {
 
 /// Unknown values are NaN.
 Values values_of(const localization::TrackRow& row, const LocalFrame* frame, bool wrong_known) {
-  const Eigen::Matrix3d& c = row.at.covariance;
+  Eigen::Matrix3d c = row.at.covariance;
   Eigen::Vector3d at(row.at.pose.x, row.at.pose.y, row.z);
-  if (frame) at = point_of_pose(*frame, at).xyz;
+  double yaw = row.at.pose.yaw;
+  if (frame) {
+    const double rotation = grid_rotation(*frame, row.at.pose.at());
+    at = point_of_pose(*frame, at).xyz;
+    yaw = localization::wrap_angle(yaw + rotation);
+    c = rotate_covariance(c, rotation);
+  }
   return {row.t,
           at.x(),
           at.y(),
           at.z(),
           row.roll,
           row.pitch,
-          row.at.pose.yaw,
+          yaw,
           c(0, 0),
           c(1, 1),
           c(0, 1),

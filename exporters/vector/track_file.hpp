@@ -7,7 +7,8 @@ namespace waymark::exporters {
 
 struct TrackOutput {
   const LocalFrame* frame =
-      nullptr;               ///< null: metres of the map frame; else positions are written in the map's CRS
+      nullptr;  ///< null: metres of the map frame; else positions and the axes of yaw and covariances are
+                ///< those of the map's CRS; covariances stay in metres
   const Crs* crs = nullptr;  ///< of a GeoPackage, which is always in the map's CRS
   bool timing = false;       ///< write the duration of each update; differs from run to run
 };

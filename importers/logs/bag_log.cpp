@@ -40,6 +40,9 @@ class BagReader {
     guarded(message, [&](const BagMessage& plain) { topics_.add(plain); });
   }
 
+  /// Chooses what is odometry, once all messages are read.
+  void choose_odometry() { log_.remarks = topics_.choose_odometry(wanted_); }
+
   /// Returns the topic of point clouds to read with read_clouds(), if there is any.
   std::optional<ChosenClouds> choose_clouds() {
     const auto chosen =
@@ -78,9 +81,10 @@ class BagReader {
           unsound_ ? fmt::format("no message of the bag can be read; the first bad one is {}", first_unsound_)
                    : "the bag has neither odometry nor scans",
           path_.string(),
-          fmt::format("Odometry of nav_msgs, and LaserScan, PointCloud2, Imu and NavSatFix of sensor_msgs "
-                      "are read; {}",
-                      topics_.contents()));
+          fmt::format(
+              "Odometry of nav_msgs, poses and transforms in a frame odom, and LaserScan, PointCloud2, "
+              "Imu and NavSatFix of sensor_msgs are read; {}",
+              topics_.contents()));
     check_wanted();
   }
 
@@ -262,6 +266,7 @@ localization::RobotLog import_bag_log(const std::filesystem::path& path, const T
   BagReader reader(path, topics);
   std::vector<std::string> remarks =
       visit_bag(path, [&](const BagMessage& message) { reader.read(message); });
+  reader.choose_odometry();
   reader.check();
   if (const auto clouds = reader.choose_clouds()) {
     if (shows_in_clouds(types, held)) {

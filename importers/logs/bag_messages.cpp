@@ -55,6 +55,13 @@ BagOdometry read_odometry(const BagMessage& message) {
   return odometry;
 }
 
+BagPose read_pose(const BagMessage& message, bool has_covariance) {
+  CdrReader in(message.bytes);
+  BagPose pose{.at = read_stamp(in, message.received), .pose = read_transform(in)};
+  if (has_covariance) pose.yaw_variance = numbers<36>(in)[35];
+  return pose;
+}
+
 BagImu read_imu(const BagMessage& message) {
   CdrReader in(message.bytes);
   BagImu imu{.at = read_stamp(in, message.received), .rate = {}, .orientation = {}};

@@ -32,6 +32,14 @@ struct BagOdometry {
 };
 BagOdometry read_odometry(const BagMessage& message);
 
+/// geometry_msgs/msg/PoseStamped and PoseWithCovarianceStamped.
+struct BagPose {
+  BagStamp at;  ///< its frame is that in which the pose is stated
+  Eigen::Isometry3d pose;
+  double yaw_variance = 0;  ///< rad^2, as stated; 0: not stated
+};
+BagPose read_pose(const BagMessage& message, bool has_covariance);
+
 /// sensor_msgs/msg/Imu.
 struct BagImu {
   BagStamp at;

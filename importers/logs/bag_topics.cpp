@@ -8,20 +8,38 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <string_view>
 
 #include "importers/logs/robot_readings.hpp"
 
 namespace waymark::importers {
 namespace {
 
+void add_pose(OdometryTopic& topic, double t, const Eigen::Isometry3d& pose, double yaw_variance) {
+  if (!topic.poses.empty()) topic.jump_back = std::max(topic.jump_back, topic.poses.back().t - t);
+  topic.poses.push_back({t, level_pose(pose)});
+  constexpr double kAnyYaw = std::numbers::pi * std::numbers::pi;  // rad^2; nothing is known of such a yaw
+  topic.unknown_yaws += !(yaw_variance >= 0 && yaw_variance < kAnyYaw);
+}
+
 void add_odometry(BagTopics& topics, const BagMessage& message) {
   BagOdometry one = read_odometry(message);
   OdometryTopic& topic = topics.odometry[std::string(message.topic)];
   if (topic.poses.empty()) topic.body = std::move(one.body);
-  if (!topic.poses.empty()) topic.jump_back = std::max(topic.jump_back, topic.poses.back().t - one.at.t);
-  topic.poses.push_back({one.at.t, level_pose(one.pose)});
-  constexpr double kAnyYaw = std::numbers::pi * std::numbers::pi;  // rad^2; nothing is known of such a yaw
-  topic.unknown_yaws += !(one.yaw_variance >= 0 && one.yaw_variance < kAnyYaw);
+  add_pose(topic, one.at.t, one.pose, one.yaw_variance);
+}
+
+void add_pose_of(BagTopics& topics, const BagMessage& message, bool has_covariance) {
+  const BagPose one = read_pose(message, has_covariance);
+  PoseTopic& topic = topics.poses[std::string(message.topic)];
+  topic.type = message.type, topic.frame = one.at.frame;
+  topic.odometry.body = "base_link";  // the message names none
+  add_pose(topic.odometry, one.at.t, one.pose, one.yaw_variance);
+}
+
+/// Returns whether a frame is one of odometry by its name (REP 105), with or without a name of the robot.
+bool is_of_odometry(std::string_view frame) {
+  return frame.substr(frame.rfind('/') + 1).starts_with("odom");
 }
 
 void add_scan(BagTopics& topics, const BagMessage& message) {
@@ -45,7 +63,12 @@ void add_frames(BagTopics& topics, const BagMessage& message) {
   for (std::size_t n = in.count(kMinSize); n > 0; --n) {
     const BagStamp at = read_stamp(in, message.received);
     const std::string child = in.text();
-    topics.frames.place(child, at.frame, read_transform(in));
+    const Eigen::Isometry3d pose = read_transform(in);
+    topics.frames.place(child, at.frame, pose);
+    if (!is_of_odometry(at.frame)) continue;
+    PoseTopic& moved = topics.moved[child];
+    moved.type = message.topic, moved.frame = at.frame, moved.odometry.body = child;
+    add_pose(moved.odometry, at.t, pose, 0);
   }
 }
 
@@ -83,6 +106,10 @@ void BagTopics::add(const BagMessage& message) {
     add_scan(*this, message);
   else if (message.type == "tf2_msgs/msg/TFMessage")
     add_frames(*this, message);
+  else if (message.type == "geometry_msgs/msg/PoseWithCovarianceStamped")
+    add_pose_of(*this, message, true);
+  else if (message.type == "geometry_msgs/msg/PoseStamped")
+    add_pose_of(*this, message, false);
   else if (message.type == "sensor_msgs/msg/Imu")
     add_imu(*this, message);
   else if (message.type == "sensor_msgs/msg/NavSatFix")
@@ -91,6 +118,33 @@ void BagTopics::add(const BagMessage& message) {
     add_cloud(*this, message);
   else
     ++others[{std::string(message.topic), std::string(message.type)}];
+}
+
+std::vector<std::string> BagTopics::choose_odometry(const std::vector<std::string>& wanted) {
+  std::vector<std::string> remarks;
+  const bool has_odometry = !odometry.empty();
+  for (auto& [name, topic] : poses) {
+    const bool is_wanted = std::ranges::find(wanted, name) != wanted.end();
+    const std::size_t count = topic.odometry.poses.size();
+    if (!is_wanted && (has_odometry || !is_of_odometry(topic.frame))) {
+      others[{name, topic.type}] += count;
+      continue;
+    }
+    remarks.push_back(fmt::format("{} poses of {} in the frame {} are taken as odometry of base_link", count,
+                                  name, topic.frame));
+    odometry[name] = std::move(topic.odometry);
+  }
+  const auto busiest = std::ranges::max_element(
+      moved, {}, [](const auto& frame) { return frame.second.odometry.poses.size(); });
+  if (odometry.empty() && busiest != moved.end() && busiest->second.odometry.poses.size() > 1) {
+    PoseTopic& frame = busiest->second;
+    const std::string name = fmt::format("{} ({} to {})", frame.type, frame.frame, busiest->first);
+    remarks.push_back(fmt::format("the bag has no messages of odometry: {} transforms of {} are taken for it",
+                                  frame.odometry.poses.size(), name));
+    odometry[name] = std::move(frame.odometry);
+  }
+  poses.clear(), moved.clear();
+  return remarks;
 }
 
 std::vector<std::string> BagTopics::names() const {

@@ -43,6 +43,14 @@ struct CloudTopic {
   std::size_t clouds = 0;
 };
 
+/// Poses of one topic, or of one frame that transforms move. They are odometry if they are stated in a frame
+/// of odometry: those in a frame of a map jump where a localizer corrects them.
+struct PoseTopic {
+  std::string type = {};   ///< of the messages
+  std::string frame = {};  ///< in which they are stated
+  OdometryTopic odometry = {};
+};
+
 /// What the messages of a bag hold, by topic.
 struct BagTopics {
   std::map<std::string, OdometryTopic> odometry = {};
@@ -50,11 +58,20 @@ struct BagTopics {
   std::map<std::string, ImuTopic> imus = {};
   std::map<std::string, FixTopic> fixes = {};
   std::map<std::string, CloudTopic> clouds = {};
+  std::map<std::string, PoseTopic> poses = {};  ///< of geometry_msgs
+  std::map<std::string, PoseTopic> moved = {};  ///< frames below one of odometry, by name
   FrameTree frames = {};
   std::map<std::pair<std::string, std::string>, std::size_t> others = {};  ///< not read, by topic and type
 
   /// Adds a message. Throws std::runtime_error for one that cannot be read.
   void add(const BagMessage& message);
+
+  /// Chooses among poses and transforms what is odometry, once all messages are added; returns remarks.
+  /// - Poses of the topics that are `wanted`.
+  /// - Without messages of odometry, poses in a frame of odometry; without such, the frame that the largest
+  ///   number of transforms move.
+  /// The other poses are not read.
+  std::vector<std::string> choose_odometry(const std::vector<std::string>& wanted);
 
   /// Returns the names of the topics that are read.
   std::vector<std::string> names() const;

@@ -8,7 +8,8 @@
 #include "pipeline/engine/codec.hpp"
 namespace waymark::importers {
 
-/// Input files of the canopy model of one survey: heights above ground; surface and terrain; or laser points.
+/// Input files of the canopy model of one survey: heights above ground; surface and terrain; or laser points,
+/// with or without a terrain model.
 struct CanopyImport {
   std::vector<std::string> chm = {}, dsm = {}, dtm = {}, las = {};
   double resolution = 0;         ///< of a canopy from points, metres; 0: by their density
@@ -50,8 +51,10 @@ std::shared_ptr<const ImportedCanopy> import_canopy(const CanopyImport& import);
 /// block when read, so that memory does not grow with the files.
 /// - Noise (classes 7 and 18) and withheld points are excluded.
 /// - Feet, horizontal and vertical, follow the units of the CRS.
-/// - If no point is classified as ground, ground points are found by pipeline/forest/ground_filter.hpp, with
-///   a warning.
+/// - With `dtm` heights are above that terrain model, whatever the classes of the points. A terrain that lies
+///   more than 10 m apart from the ground of the laser is refused, more than 1 m is a warning.
+/// - Else, if no point is classified as ground, ground points are found by pipeline/forest/ground_filter.hpp,
+///   with a warning.
 /// Throws Error{input} as read_las_header does, for a CRS in degrees, files of different CRSs, and too few
 /// points to find the ground.
 std::shared_ptr<const ImportedCanopy> import_points(const CanopyImport& import);

@@ -5,9 +5,12 @@
 #include <cmath>
 #include <filesystem>
 #include <list>
+#include <map>
+#include <utility>
 
 #include "core/error.hpp"
 #include "importers/points/canopy.hpp"
+#include "importers/points/canopy_terrain.hpp"
 #include "importers/points/las_catalogue.hpp"
 #include "pipeline/forest/canopy_model.hpp"
 #include "pipeline/forest/ground_filter.hpp"
@@ -20,6 +23,9 @@ constexpr double kHalo = 20;          // metres of points around a block
 constexpr double kGroundHalo = 60;    // metres of points around a block for finding the ground
 constexpr double kMinDensity = 0.25;  // returns per m2; below, ground cannot be recognised by its shape
 constexpr std::size_t kKeptBlocks = 256;
+// Metres between the ground of the laser and a terrain model: more than the errors of both; surely another
+// datum.
+constexpr double kUsualOffset = 1, kMaxOffset = 10;
 // Memory of the points of a block, in units of --memory: surveys stay far below it.
 constexpr std::int64_t kMemoryTimes = 4;
 // Cells of the grid: the work is bounded by the size of the input. A survey has .01 to 20 cells per point.
@@ -65,7 +71,10 @@ class PointCanopy final : public ImportedCanopy {
     unit_ = crs.metres_per_unit();
     set_height_unit();
     lay_grid();
-    if (catalogue_.ground_points() == 0) check_unclassified();
+    if (!import.dtm.empty())
+      open_terrain();
+    else if (catalogue_.ground_points() == 0)
+      check_unclassified();
     read_area();
   }
 
@@ -73,7 +82,7 @@ class PointCanopy final : public ImportedCanopy {
   const std::string& name() const override { return name_; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
   const CanopyImport& import() const override { return import_; }
-  DemHandle terrain() const override { return nullptr; }
+  DemHandle terrain() const override { return terrain_.dem(); }
   Grid<std::uint8_t> forest_types(const Window&) const override { return {}; }
 
   Grid<float> read(const Window& window) const override {
@@ -133,6 +142,78 @@ class PointCanopy final : public ImportedCanopy {
         import_.las[0] +
         ": no point is classified as ground (class 2): the ground is found by its shape (Axelsson "
         "2000), which confuses low dense canopy with steps of the terrain");
+  }
+
+  void open_terrain() {
+    CanopyImport terrain = import_;
+    terrain.memory_bytes /= 4;
+    terrain_ = CanopyTerrain(terrain, grid_, warnings_);
+    if (!terrain_.covers_surface())
+      warnings_.push_back(import_.dtm[0] +
+                          ": the terrain model does not cover all points: where it ends, no heights are "
+                          "known and no trees are found");
+    if (import_.inspect) compare_with_terrain();
+  }
+
+  /// Compares returns of the ground with the terrain model in squares spread over the survey.
+  void compare_with_terrain() {
+    const double offset = median_above_terrain();
+    if (std::isnan(offset)) return;
+    const std::string what =
+        fmt::format("the {} of the laser lie {:.1f} m {} the terrain model in the median",
+                    catalogue_.ground_points() > 0 ? "ground points" : "lowest points", std::abs(offset),
+                    offset > 0 ? "above" : "below");
+    const char* const hint =
+        "is one of them above the ellipsoid and the other above the sea, or in feet? transform it (gdalwarp, "
+        "pdal filters.reprojection with vertical CRSs)";
+    if (std::abs(offset) > kMaxOffset) throw Error(ErrorCode::input, what, import_.dtm[0], hint);
+    if (std::abs(offset) > kUsualOffset && catalogue_.ground_points() > 0)
+      warnings_.push_back(
+          fmt::format("{}: {}: heights of trees are that much wrong; {}", import_.dtm[0], what, hint));
+  }
+
+  /// Returns the median height of ground points, or of the lowest point of each square of 5 m, above the
+  /// terrain model; NaN if there are too few.
+  double median_above_terrain() const {
+    constexpr int kSquares = 4;              // on each side
+    constexpr double kSide = 40, kCell = 5;  // metres
+    constexpr std::size_t kMinPoints = 20;
+    const bool classified = catalogue_.ground_points() > 0;
+    const Georeference& where = grid_.where;
+    std::vector<double> above;
+    for (int i = 0; i < kSquares * kSquares; ++i) {
+      const auto middle = [](int k, std::int64_t count) {
+        return static_cast<std::int64_t>((k + 0.5) / kSquares * static_cast<double>(count));
+      };
+      const auto half = static_cast<std::int64_t>(kSide / 2 / (where.dx * unit_));
+      const Window window{middle(i % kSquares, grid_.columns) - half, middle(i / kSquares, grid_.rows) - half,
+                          2 * half + 1, 2 * half + 1};
+      const Grid<float> ground = terrain_.at(window);
+      std::map<std::pair<std::int64_t, std::int64_t>, double> lowest;
+      const auto first = [](std::int64_t k) { return static_cast<double>(k); };
+      catalogue_.visit(
+          {where.x(first(window.column)), where.y(first(window.end_row())),
+           where.x(first(window.end_column())), where.y(first(window.row))},
+          [&](const LasPoint& p) {
+            if (classified && p.classification != 2) return;
+            const auto c = std::llround(where.column(p.x)) - window.column,
+                       r = std::llround(where.row(p.y)) - window.row;
+            if (!ground.contains(c, r) || std::isnan(ground(c, r))) return;
+            const double height = p.z * height_unit_ - static_cast<double>(ground(c, r));
+            if (classified) {
+              above.push_back(height);
+              return;
+            }
+            const auto square = [](double v) { return static_cast<std::int64_t>(std::floor(v / kCell)); };
+            const auto [at, is_new] = lowest.try_emplace({square(p.x * unit_), square(p.y * unit_)}, height);
+            if (!is_new) at->second = std::min(at->second, height);
+          });
+      for (const auto& [square, height] : lowest) above.push_back(height);
+    }
+    if (above.size() < kMinPoints) return std::nan("");
+    const auto middle = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 2);
+    std::ranges::nth_element(above, middle);
+    return *middle;
   }
 
   void set_height_unit() {
@@ -195,7 +276,7 @@ class PointCanopy final : public ImportedCanopy {
     const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
     const pipeline::CellFrame frame{
         where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
-    const bool classified = catalogue_.ground_points() > 0;
+    const bool classified = terrain_.is_open() || catalogue_.ground_points() > 0;
     const double around = (classified ? kHalo : kGroundHalo) / unit_, last = static_cast<double>(kBlock);
     pipeline::LaserPoints points;
     const std::size_t max_points =
@@ -205,11 +286,18 @@ class PointCanopy final : public ImportedCanopy {
                       where.y(top) + around},
                      [&](const LasPoint& p) {
                        const Eigen::Vector3d at(p.x * unit_, p.y * unit_, p.z * height_unit_);
-                       if (p.classification == 2 || !classified) points.ground.push_back(at);
+                       if (!terrain_.is_open() && (p.classification == 2 || !classified))
+                         points.ground.push_back(at);
                        if (is_first(p)) points.surface.push_back(at);
                        if (points.ground.size() + points.surface.size() > max_points)
                          refuse_density(column, row);
                      });
+    if (terrain_.is_open()) {
+      constexpr std::int64_t margin = pipeline::kTerrainMargin;
+      const Grid<float> terrain = terrain_.at(
+          {column * kBlock - margin, row * kBlock - margin, kBlock + 2 * margin, kBlock + 2 * margin});
+      return pipeline::canopy_block(points.surface, terrain, frame, spacing_);
+    }
     if (!classified) points.ground = pipeline::ground_returns(points.ground);
     return pipeline::canopy_block(points, frame, spacing_);
   }
@@ -231,6 +319,7 @@ class PointCanopy final : public ImportedCanopy {
   CanopyImport import_;
   LasCatalogue catalogue_;
   GridGeometry grid_;
+  CanopyTerrain terrain_;  // closed: the ground is that of the points
   double unit_ = 1, height_unit_ = 1, spacing_ = 1;
   std::vector<std::string> warnings_;
   std::string name_;

@@ -25,11 +25,11 @@ struct LoadCanopy {
     void describe(OptionVisitor& option) {
       option("chm", chm, {.help = "Canopy height models: heights above ground"});
       option("dsm", dsm, {.help = "Surface models, instead of chm; dtm gives the terrain"});
-      option("dtm", dtm, {.help = "Terrain models under the surface models, on any grid"});
+      option("dtm", dtm,
+             {.help = "Terrain models under the surface models or the laser points, on any grid"});
       option("las", las,
              {.help = "LAS, LAZ or COPC files, instead of chm: one catalogue of laser points, with "
-                      "classified ground "
-                      "(class 2)"});
+                      "classified ground (class 2) or with dtm"});
       option("resolution", resolution,
              {.help = "Cell size of the canopy made from laser points; 0: by their density",
               .min = 0,
@@ -64,7 +64,7 @@ struct LoadCanopy {
   static pipeline::StageSpec spec() {
     return {.name = "load_canopy",
             .summary = "Opens canopy height models, or surface and terrain models, and cuts them into tiles",
-            .version = 2,
+            .version = 3,
             .scope = pipeline::Scope::map,
             .lists = pipeline::Scope::tile,
             .outputs = {dem, canopies, tiles}};
@@ -116,9 +116,10 @@ struct LoadCanopy {
   }
 
   static void check(const Options& o) {
-    if (!o.las.empty() && !(o.chm.empty() && o.dsm.empty() && o.dtm.empty()))
-      throw Error(ErrorCode::usage, "laser points and rasters are given", "load_canopy.las",
-                  "points make their own canopy model: leave out one or the other");
+    if (!o.las.empty() && !(o.chm.empty() && o.dsm.empty()))
+      throw Error(ErrorCode::usage, "laser points and rasters of a canopy are given", "load_canopy.las",
+                  "points make their own canopy model: leave out one or the other; a terrain model (dtm) may "
+                  "be given with points");
   }
 
   // Includes the folder if another file has the same name: names identify surveys.

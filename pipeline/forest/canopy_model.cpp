@@ -111,26 +111,28 @@ double ground_at(const Grid<float>& ground, double column, double row) {
          v * ((1 - u) * static_cast<double>(ground(i, j2)) + u * static_cast<double>(ground(i2, j2)));
 }
 
-}  // namespace
-
-CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, double spacing) {
-  CanopyBlock block{Grid<float>(frame.columns, frame.rows, std::nanf("")),
-                    rasterised_tin(points.ground, frame, 1e9, Beyond::nearest)};
-  if (points.ground.empty()) return block;
+// Returns the pit-free heights of points above the ground, whose elevation `ground` returns between cells of
+// the frame.
+template <class Ground>
+Grid<float> heights_above(const Ground& ground, std::span<const Eigen::Vector3d> surface,
+                          const CellFrame& frame, double spacing) {
+  Grid<float> heights(frame.columns, frame.rows, std::nanf(""));
   // Highest point of each cell, including a margin around the frame.
   const double cell = frame.dx;
   struct Highest {
     double height = -1;
     Eigen::Vector3d point = Eigen::Vector3d::Zero();
   };
-  const std::int64_t margin = 16;
+  const std::int64_t margin = kTerrainMargin;
   Grid<Highest> highest(frame.columns + 2 * margin, frame.rows + 2 * margin);
-  for (const Eigen::Vector3d& p : points.surface) {
+  for (const Eigen::Vector3d& p : surface) {
     const double column = (p.x() - frame.x0) / frame.dx, row = (p.y() - frame.y0) / frame.dy;
     const auto c = static_cast<std::int64_t>(std::floor(column + 0.5)) + margin;
     const auto r = static_cast<std::int64_t>(std::floor(row + 0.5)) + margin;
     if (!highest.contains(c, r)) continue;
-    const double height = std::max(0.0, p.z() - ground_at(block.ground, column, row));
+    const double above_ground = p.z() - ground(column, row);
+    if (std::isnan(above_ground)) continue;
+    const double height = std::max(0.0, above_ground);
     Highest& best = highest(c, r);
     const bool replaces =
         height > best.height ||
@@ -147,15 +149,43 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
     const double longest = threshold == 0 ? kMaxGap : std::max(1.0, 3 * std::max(cell, spacing));
     const Grid<float> layer = rasterised_tin(above, frame, longest, Beyond::nothing);
     for (std::size_t i = 0; i < layer.cells().size(); ++i) {
-      float& h = block.heights.cells()[i];
+      float& h = heights.cells()[i];
       if (!(h >= layer.cells()[i]) && !std::isnan(layer.cells()[i])) h = layer.cells()[i];
     }
   }
   for (std::int64_t r = 0; r < frame.rows; ++r)  // a TIN passes below the highest point of a cell
     for (std::int64_t c = 0; c < frame.columns; ++c) {
       const double own = highest(c + margin, r + margin).height;
-      float& h = block.heights(c, r);
+      float& h = heights(c, r);
       if (own >= 0 && !(static_cast<double>(h) >= own)) h = static_cast<float>(own);
+    }
+  return heights;
+}
+
+}  // namespace
+
+CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, double spacing) {
+  CanopyBlock block{Grid<float>(frame.columns, frame.rows, std::nanf("")),
+                    rasterised_tin(points.ground, frame, 1e9, Beyond::nearest)};
+  if (points.ground.empty()) return block;
+  block.heights =
+      heights_above([&](double column, double row) { return ground_at(block.ground, column, row); },
+                    points.surface, frame, spacing);
+  return block;
+}
+
+CanopyBlock canopy_block(std::span<const Eigen::Vector3d> surface, const Grid<float>& terrain,
+                         const CellFrame& frame, double spacing) {
+  constexpr double kMargin = kTerrainMargin;
+  CanopyBlock block{
+      heights_above(
+          [&](double column, double row) { return ground_at(terrain, column + kMargin, row + kMargin); },
+          surface, frame, spacing),
+      Grid<float>(frame.columns, frame.rows)};
+  for (std::int64_t r = 0; r < frame.rows; ++r)
+    for (std::int64_t c = 0; c < frame.columns; ++c) {
+      block.ground(c, r) = terrain(c + kTerrainMargin, r + kTerrainMargin);
+      if (std::isnan(block.ground(c, r))) block.heights(c, r) = std::nanf("");
     }
   return block;
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <span>
 #include <vector>
 #include "core/grid.hpp"
 namespace waymark::pipeline {
@@ -30,5 +31,15 @@ struct CanopyBlock {
 /// - Points around the frame are needed for correct edges.
 /// Departure: heights of points are above the ground TIN sampled at the cells, interpolated.
 CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, double spacing);
+
+/// Cells of a terrain model that canopy_block() needs on each side of the frame.
+inline constexpr std::int64_t kTerrainMargin = 16;
+
+/// Computes the same over a terrain model in place of ground points; `surface` as in LaserPoints.
+/// - `terrain`: elevations, metres, on the cells of the frame and kTerrainMargin more on each side; NaN:
+/// unknown.
+/// - Heights over unknown terrain are NaN.
+CanopyBlock canopy_block(std::span<const Eigen::Vector3d> surface, const Grid<float>& terrain,
+                         const CellFrame& frame, double spacing);
 
 }  // namespace waymark::pipeline

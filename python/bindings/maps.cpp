@@ -20,6 +20,7 @@ const Keywords<workflows::QueryRequest>& query_keywords() {
   static const auto all = Keywords<R>()
                               .add("types", &R::types)
                               .add("bbox", &R::bbox)
+                              .add("aoi", &R::aoi)
                               .add("near", &R::near)
                               .add("nearest", &R::nearest)
                               .add("min", &R::min_features)

@@ -772,13 +772,14 @@ class Map:
     def __contains__(self, type: Any) -> bool:
         """Whether the map has landmarks of a type."""
         ...
-    def query(self, types: Any = ..., *, bbox: Sequence[Any] | _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> dict[str, np.ndarray]:
+    def query(self, types: Any = ..., *, bbox: Sequence[Any] | _Path = ..., aoi: _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> dict[str, np.ndarray]:
         """Returns a structured array per type: {"rock": array, ...}.
 
         min_FEATURE and max_FEATURE bound any number of the landmarks: min_prominence=300.
 
         Keywords:
             bbox: min_x, min_y, max_x, max_y
+            aoi: file of polygons in any CRS of the body; empty: everywhere
             near: x, y, radius in metres
             nearest: x, y, count
             min
@@ -790,7 +791,7 @@ class Map:
             largest: feature, or other column of numbers, whose largest values come first
             limit"""
         ...
-    def landmarks(self, type: Any = ..., *, bbox: Sequence[Any] | _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> np.ndarray:
+    def landmarks(self, type: Any = ..., *, bbox: Sequence[Any] | _Path = ..., aoi: _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> np.ndarray:
         """Returns the landmarks of one type as a structured array with the columns of `waymark query`.
 
         type may be left out if the map has landmarks of one type only. Unknown numbers are NaN.
@@ -798,6 +799,7 @@ class Map:
 
         Keywords:
             bbox: min_x, min_y, max_x, max_y
+            aoi: file of polygons in any CRS of the body; empty: everywhere
             near: x, y, radius in metres
             nearest: x, y, count
             min
@@ -809,11 +811,12 @@ class Map:
             largest: feature, or other column of numbers, whose largest values come first
             limit"""
         ...
-    def to_geopandas(self, type: Any = ..., *, bbox: Sequence[Any] | _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> Any:
+    def to_geopandas(self, type: Any = ..., *, bbox: Sequence[Any] | _Path = ..., aoi: _Path = ..., near: Sequence[Any] | _Path = ..., nearest: Sequence[Any] | _Path = ..., min: Sequence[Any] | _Path = ..., max: Sequence[Any] | _Path = ..., crs: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., min_quality: float = ..., largest: _Path = ..., limit: int = ..., **conditions: Any) -> Any:
         """Returns the landmarks of one type as a GeoDataFrame of points, indexed by uid.
 
         Keywords:
             bbox: min_x, min_y, max_x, max_y
+            aoi: file of polygons in any CRS of the body; empty: everywhere
             near: x, y, radius in metres
             nearest: x, y, count
             min
@@ -951,8 +954,8 @@ def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: 
 def find_trees(chm: Any = ..., *, dsm: Any = ..., dtm: Any = ..., las: Any = ..., flights: Any = ..., crowns: Any = ..., output: Any = ..., transform: Any = ..., crs: Any = ..., cell: Any = ..., progress: Any = ..., **options: Any) -> Any:
     """Returns the trees of a canopy, as `waymark trees`.
 
-    chm is a canopy height model (array, file or list), or else give dsm and dtm, or las. Other arguments as for
-    `find_mountain_tops`. Options: preset, min_height, allometry, species, ..."""
+    chm is a canopy height model (array, file or list), or else give dsm and dtm, or las with or without dtm. Other
+    arguments as for `find_mountain_tops`. Options: preset, min_height, allometry, species, ..."""
     ...
 
 def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | _Path = ..., vehicle: _Path = ..., polygons: _Path = ..., nav2: _Path = ..., height_sd: float = ..., height_correlation: float = ..., rock_cover: float = ..., detection_limit: float = ..., uncertain: float = ..., hazard: float = ..., landing_ellipse: _Path = ..., sun: _Path = ..., horizon_reach: float = ..., aoi: _Path = ..., crs: _Path = ..., tile_cells: int = ..., threads: int = ...) -> dict[str, Any]:

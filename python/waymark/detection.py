@@ -100,8 +100,8 @@ def find_trees(chm=None, *, dsm=None, dtm=None, las=None, flights=None, crowns=N
                crs=None, cell=1.0, progress=None, **options):
     """Returns the trees of a canopy, as `waymark trees`.
 
-    chm is a canopy height model (array, file or list), or else give dsm and dtm, or las. Other arguments as for
-    `find_mountain_tops`. Options: preset, min_height, allometry, species, ...
+    chm is a canopy height model (array, file or list), or else give dsm and dtm, or las with or without dtm. Other
+    arguments as for `find_mountain_tops`. Options: preset, min_height, allometry, species, ...
     """
     given = {name: raster for name, raster in (("chm", chm), ("dsm", dsm), ("dtm", dtm)) if raster is not None}
     canopy = keywords(las=las, flights=flights, crowns=crowns)

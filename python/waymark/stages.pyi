@@ -68,8 +68,8 @@ def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = 
 
     chm: Canopy height models: heights above ground
     dsm: Surface models, instead of chm; dtm gives the terrain
-    dtm: Terrain models under the surface models, on any grid
-    las: LAS, LAZ or COPC files, instead of chm: one catalogue of laser points, with classified ground (class 2)
+    dtm: Terrain models under the surface models or the laser points, on any grid
+    las: LAS, LAZ or COPC files, instead of chm: one catalogue of laser points, with classified ground (class 2) or with dtm
     resolution [m]: Cell size of the canopy made from laser points; 0: by their density (at least 0, at most 20)
     flights: Each file of chm (of dsm, of las) is a separate survey: trees found in several are merged. Otherwise the files make one canopy; where they overlap the first one has priority
     forest_type: Raster of forest types, which select the preset for finding treetops: 1 conifer, 2 broadleaf, 3 mixed

@@ -92,6 +92,40 @@ TEST_F(AreaOfInterest, OfTreesOfSeveralFlights) {
   EXPECT_EQ(rows_of("area.gpkg", "crown"), rows_of("area.gpkg", "tree"));
 }
 
+TEST_F(AreaOfInterest, OfAMapThatIsMade) {
+  const std::string chm = make_dem(folder_ / "chm.tif", cones_at_origin());
+  ASSERT_EQ(waymark({"trees", "--chm", chm, "-o", folder_ / "all.gpkg"}).code, 0);
+  const std::string all = folder_ / "all.gpkg";
+  const std::string area = west_of(500061, "urn:ogc:def:crs:EPSG::32632");
+  const auto is_inside = [](const auto& one) { return one.second["x"].template get<double>() < 500061; };
+  std::map<std::string, json> inside = landmarks("all.gpkg");
+  EXPECT_GT(std::erase_if(inside, [&](const auto& one) { return !is_inside(one); }), 0U);
+  ASSERT_GT(inside.size(), 9U);
+
+  std::map<std::string, json> asked;
+  for (const json& one : json::parse(waymark({"query", all, "--aoi", area, "--format", "json"}).out))
+    asked[one["uid"]] = one;
+  EXPECT_TRUE(asked == inside);
+  const auto count = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"query", all, "--aoi", area, "--format", "json"});
+    return json::parse(waymark(more).out).size();
+  };
+  EXPECT_EQ(count({"--limit", "5"}), 5U);
+  EXPECT_EQ(count({"--nearest", "500149", "5199950", "7"}), 7U);
+
+  const Outcome cut = waymark({"export", all, folder_ / "area.gpkg", "--aoi", area});
+  ASSERT_EQ(cut.code, 0) << cut.err;
+  EXPECT_THAT(cut.err, HasSubstr("layers of the whole map are left out: survey"));
+  EXPECT_EQ(waymark({"validate", folder_ / "area.gpkg"}).out, "");
+  EXPECT_TRUE(landmarks("area.gpkg") == inside);
+  EXPECT_EQ(rows_of("area.gpkg", "crown"), rows_of("area.gpkg", "tree"));
+  const Outcome robot = waymark({"export", all, folder_ / "t.yaml", "-of", "beluga", "--aoi", area});
+  EXPECT_EQ(robot.code, 2);
+  EXPECT_THAT(robot.err, HasSubstr("export the area to a .gpkg first"));
+  const Outcome label = waymark({"export", all, folder_ / "t.yaml", "-of", "beluga", "--label", "A=B"});
+  EXPECT_THAT(label.err, HasSubstr("--label and --area do not apply"));
+}
+
 TEST_F(AreaOfInterest, OfRocksAndCratersInImages) {
   const auto site = simulate_flight(folder_.path(), {});
   expect_same_inside({"images", site / "images", "--cameras", site / "cameras.json", "--dem",

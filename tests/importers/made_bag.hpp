@@ -69,6 +69,17 @@ inline MadeMessage made_odometry(bool big, double t, double x, double y, double 
   return {topic, "nav_msgs/msg/Odometry", cdr.bytes()};
 }
 
+/// A pose in a frame: geometry_msgs/msg/PoseWithCovarianceStamped, or PoseStamped.
+inline MadeMessage made_pose(bool big, double t, double x, double y, double yaw, const std::string& topic,
+                             const std::string& frame, bool has_covariance = true) {
+  MadeCdr cdr(big);
+  cdr.header(t, frame).pose(x, y, 0, yaw);
+  for (int i = 0; has_covariance && i < 36; ++i) cdr.add(0.0);
+  return {topic,
+          has_covariance ? "geometry_msgs/msg/PoseWithCovarianceStamped" : "geometry_msgs/msg/PoseStamped",
+          cdr.bytes()};
+}
+
 inline MadeMessage made_scan(bool big, double t, double first, double step, const std::vector<float>& ranges,
                              const std::string& topic = "/scan") {
   MadeCdr cdr(big);

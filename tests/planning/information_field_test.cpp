@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+
 #include "tests/support/small_routes.hpp"
 
 namespace waymark::test {
@@ -35,6 +37,19 @@ TEST(InformationField, HoldsWhatEachCellSeesPastTheTerrainForAnyNumberOfThreads)
       }
   }
   EXPECT_GT(hidden, 100u);
+}
+
+TEST(InformationField, ReportsRowsAndEndsWhereItIsAsked) {
+  struct Stop {};
+  const RouteCells cells{.cell = 2, .columns = 7, .rows = 40};
+  const std::vector<char> passable(280, 1);
+  const localization::LandmarkGrid map = scattered_landmarks(1);
+  std::vector<double> done;
+  make_information_field(cells, passable, map, sensing(20), [&](double part) { done.push_back(part); });
+  ASSERT_EQ(done.size(), 40);
+  EXPECT_TRUE(std::ranges::is_sorted(done));
+  EXPECT_EQ(done.back(), 1);
+  EXPECT_THROW(make_information_field(cells, passable, map, sensing(20), [](double) { throw Stop(); }), Stop);
 }
 
 }  // namespace

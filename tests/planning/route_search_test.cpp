@@ -3,7 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -201,6 +203,24 @@ TEST(RouteSearch, NoWayIsNoRoute) {
   for (std::int64_t i = 10; i < 15; ++i) problem.passable[static_cast<std::size_t>(i)] = 0;
   EXPECT_FALSE(search_by_sigma(problem, {}));
   EXPECT_FALSE(search_by_landmarks(problem, 1, false));
+}
+
+TEST(RouteSearch, ReportsWhatIsDoneAndEndsWhereItIsAsked) {
+  struct Stop {};
+  RouteProblem problem = problem_of(120, 120, scattered_landmarks(5), sensing(20));
+  const auto by_sigma = [&] { return search_by_sigma(problem, {.weight = 3}); };
+  const auto by_landmarks = [&] { return search_by_landmarks(problem, 100, false); };
+  for (const std::function<std::optional<Route>()>& search : {std::function(by_sigma), {by_landmarks}}) {
+    std::vector<double> done;
+    problem.advanced = [&](double part) { done.push_back(part); };
+    ASSERT_TRUE(search());
+    ASSERT_GE(done.size(), 2);
+    EXPECT_TRUE(std::ranges::is_sorted(done));
+    EXPECT_GT(done.front(), 0);
+    EXPECT_LE(done.back(), 1);
+    problem.advanced = [](double) { throw Stop(); };
+    EXPECT_THROW(search(), Stop);
+  }
 }
 
 }  // namespace

@@ -138,3 +138,21 @@ def test_hazards_are_those_of_the_program(site, tmp_path):
     printed = json.loads(program("hazards", map.path, "--dem", dem, "-o", tmp_path / "program.tif", "--format", "json"))
     assert made == {name: printed[name] for name in made}
     assert (tmp_path / "python.tif").read_bytes() == (tmp_path / "program.tif").read_bytes()
+
+
+def test_a_route_reports_what_is_done_and_stops_on_ctrl_c(site, tmp_path):
+    heard = []
+    options = dict(sensor="horizontal_laser", least_sigma=True, worlds=4, cell=1)
+    waymark.route(site / "map.gpkg", (-30, -30), (30, 30), tmp_path / "all.csv", progress=lambda *at: heard.append(at),
+                  **options)
+    assert [stage for stage, *_ in heard][0] == "information" and heard[-1][0] == "route"
+    searched = [done for stage, done, *_ in heard if stage == "route"]
+    assert len(searched) > 3 and searched == sorted(searched) and searched[-1] == heard[-1][2] == 17
+
+    def interrupt(stage, *at):
+        if stage == "route":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        waymark.route(site / "map.gpkg", (-30, -30), (30, 30), tmp_path / "none.csv", progress=interrupt, **options)
+    assert not (tmp_path / "none.csv").exists()

@@ -96,6 +96,8 @@ TEST(TreeStages, CanopyIsRastersOrPoints) {
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {}); }), HasSubstr("no canopy is given"));
   EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {.chm = {"a.tif"}, .las = {"a.las"}}); }),
               HasSubstr("--las is given together with rasters"));
+  EXPECT_THAT(usage_error([&] { add_tree_stages(pipeline, {.dtm = {"a.tif"}}); }),
+              HasSubstr("--dtm is given without --dsm or --las"));
 }
 
 TEST(Detect, UnknownKindNamesTheNearest) {
@@ -122,6 +124,9 @@ TEST(Inventory, StandsOrGrid) {
   request.stands = "stands.geojson";
   request.grid = 100;
   EXPECT_THAT(usage_error([&] { inventory(request); }), HasSubstr("--stands and --grid exclude each other"));
+  request.stands.clear(), request.grid = 0, request.stands_layer = "compartments";
+  EXPECT_THAT(usage_error([&] { inventory(request); }),
+              HasSubstr("--stands-layer names a layer of --stands"));
 }
 
 TEST(Train, CratersTakeNoImages) {

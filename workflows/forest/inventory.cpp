@@ -35,6 +35,9 @@ void check_request(const InventoryRequest& request) {
                 "e.g. --report stands.html; a browser prints it as PDF");
   if (!request.stands.empty() && request.grid != 0)
     throw Error(ErrorCode::usage, "--stands and --grid exclude each other", "", "give one of them");
+  if (!request.stands_layer.empty() && request.stands.empty())
+    throw Error(ErrorCode::usage, "--stands-layer names a layer of --stands, which is not given", "",
+                "give both, or leave it out");
   if (request.grid != 0) check_number("--grid", request.grid, "m", {.help = "", .min = 1, .max = 1e5});
   if (request.max_trees < 1)
     throw Error(ErrorCode::usage, fmt::format("--trees-at-once = {} is below 1", request.max_trees));

@@ -53,11 +53,22 @@ void check_edit(const EditRequest& request) {
   if (moves && request.uids.size() != 1) refuse("one landmark is moved at a time", "give one uid");
   if (adds && !request.uids.empty()) refuse("a new landmark has no uid yet", "leave out the uid");
   if (adds && request.type.empty()) refuse("the type of the new landmark is missing", "pass --type TYPE");
+  const auto only_of = [&](bool is_given, const char* option, bool applies, const char* actions) {
+    if (is_given && !applies) refuse(fmt::format("{} is an option of {}", option, actions), "leave it out");
+  };
+  only_of(!request.type.empty(), "--type", adds, "add");
+  only_of(!request.features.empty(), "--feature", adds, "add");
+  only_of(!request.rim.empty(), "--rim", adds, "add");
+  only_of(!request.at.empty(), "--at", adds || moves, "add and move");
+  only_of(request.z.has_value(), "--z", adds || moves, "add and move");
+  only_of(request.position_sd != 0, "--position-sd", adds || moves, "add and move");
+  only_of(request.confidence != EditRequest{}.confidence, "--confidence",
+          adds || request.edit == MapEdit::accept, "accept and add");
   const bool rim = !request.rim.empty();
   if ((adds || moves) && request.at.empty() != rim)
     refuse("a position is needed, once",
            adds ? "pass --at X Y, or --rim X1 Y1 X2 Y2 X3 Y3" : "pass --at X Y");
-  if (rim && (moves || request.rim.size() != 6))
+  if (rim && request.rim.size() != 6)
     refuse("--rim takes the x and y of three points of a new landmark", "e.g. --rim 10 0 0 10 -10 0");
   if (!request.at.empty() && request.at.size() != 2) refuse("--at takes X Y", "e.g. --at 431.5 -20.25");
   check_number("--confidence", request.confidence, "",

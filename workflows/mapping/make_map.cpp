@@ -28,15 +28,16 @@ void check_files(const CanopyFiles& canopy) {
   if (chm.empty() && las.empty() && !surface)
     throw Error(ErrorCode::usage, "no canopy is given", "",
                 "pass --chm CHM.tif, or --dsm DSM.tif --dtm DTM.tif, or --las POINTS.las");
-  if (!las.empty() && (surface || !chm.empty()))
-    throw Error(ErrorCode::usage, "--las is given together with rasters", "",
-                "points make their own canopy model: leave out one or the other");
+  if (!las.empty() && !(dsm.empty() && chm.empty()))
+    throw Error(
+        ErrorCode::usage, "--las is given together with rasters of a canopy", "",
+        "points make their own canopy model: leave out one or the other; --dtm may be given with points");
   if (!chm.empty() && surface)
     throw Error(ErrorCode::usage, "--chm is given together with --dsm or --dtm", "",
                 "a canopy height model needs no terrain: leave out one or the other");
-  if (surface && (dsm.empty() || dtm.empty()))
+  if (las.empty() && surface && (dsm.empty() || dtm.empty()))
     throw Error(ErrorCode::usage,
-                dsm.empty() ? "--dtm is given without --dsm" : "--dsm is given without --dtm", "",
+                dsm.empty() ? "--dtm is given without --dsm or --las" : "--dsm is given without --dtm", "",
                 "heights of trees are the surface less the terrain: give both");
 }
 

@@ -48,7 +48,7 @@ MapPlace register_map(const RegisterRequest& request, const Callbacks& callbacks
                 "make it in a projected CRS");
   const MapPlace place = importers::is_raster(request.catalogue) ? register_by_heights(request, map)
                                                                  : register_by_craters(request, map);
-  exporters::MapSubset whole = exporters::map_subset(map, map.types().names(), map.crs());
+  exporters::MapSubset whole = exporters::map_subset(map, {.types = map.types().names()}, map.crs());
   geodb::MapContents& contents = whole.contents;
   for (const std::string& name : geodb::shape_layers(request.map))
     contents.layers.push_back(geodb::read_shape_layer(request.map, name));

@@ -22,6 +22,10 @@ using planning::slot;
 
 }  // namespace
 
+int LegPlanner::max_searches() const {
+  return request.keep_landmarks > 0 ? 1 : request.weight > 0 ? 3 : kMaxSearches;
+}
+
 void LegPlanner::begin_leg(std::int64_t from, std::int64_t to) {
   problem.from = from, problem.to = to;
   problem.to_go = planning::distances_to(problem.field.cells, problem.passable, to);
@@ -34,8 +38,13 @@ Route LegPlanner::with_belief(Route route) const {
   return route;
 }
 
+std::optional<Route> LegPlanner::search_alone(const planning::SigmaSearch& wanted) const {
+  if (progress) progress->begin_search();
+  return planning::search_by_sigma(problem, wanted);
+}
+
 std::optional<Route> LegPlanner::search(const planning::SigmaSearch& wanted) const {
-  auto route = planning::search_by_sigma(problem, wanted);
+  auto route = search_alone(wanted);
   return route ? std::optional(with_belief(std::move(*route))) : std::nullopt;
 }
 
@@ -88,12 +97,12 @@ std::optional<Route> LegPlanner::keep(double limit) const {
 /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
 /// routes that weigh the sd.
 Route LegPlanner::min_sd_route() const {
-  const Route shortest = *planning::search_by_sigma(problem, {.labels = 1});
+  const Route shortest = *search_alone({.labels = 1});
   Route best = with_belief(shortest);
   double low = position_sd(problem.start), high = shortest.worst_sd;
   while (high > 1.01 * low) {
     const double middle = std::sqrt(low * high);
-    auto route = planning::search_by_sigma(problem, {.max_sd = middle, .labels = 1});
+    auto route = search_alone({.max_sd = middle, .labels = 1});
     if (!route) {
       low = middle;
       continue;
@@ -109,7 +118,8 @@ Route LegPlanner::min_sd_route() const {
 
 std::vector<double> LegPlanner::min_sd_in_any_world(double limit) const {
   if (max_rates_.empty())
-    max_rates_ = planning::max_rate_in_any_world(problem.field.cells, problem.passable, landmarks, sensing);
+    max_rates_ = planning::max_rate_in_any_world(problem.field.cells, problem.passable, landmarks, sensing,
+                                                 problem.advanced);
   // Persistent errors may be known: they bound nothing.
   return planning::relaxed_sd(problem, limit, {odometry.noise, max_rates_});
 }

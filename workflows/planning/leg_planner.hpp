@@ -4,7 +4,11 @@
 #include <utility>
 #include "planning/world_beliefs.hpp"
 #include "workflows/planning/route.hpp"
+#include "workflows/planning/route_progress.hpp"
 namespace waymark::workflows {
+
+/// Largest number of searches of a leg: trials of a limit and weights, or a bisection to 1 % and weights.
+inline constexpr int kMaxSearches = 16;
 
 /// Searches the legs of one request, one after the other.
 struct LegPlanner {
@@ -18,7 +22,10 @@ struct LegPlanner {
   planning::Odometry odometry = {};
   std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
   bool worlds_agree = true;                           ///< at the start of the leg: all have problem.start
+  RouteProgress* progress = nullptr;                  ///< of problem.advanced; null: nobody listens
 
+  /// Returns the largest number of searches of leg().
+  int max_searches() const;
   /// Begins a leg between two cells at problem.start: what bounds another leg is forgotten.
   void begin_leg(std::int64_t from, std::int64_t to);
   /// Returns a route of the search with the belief over worlds; `std::nullopt` if there is none. The search
@@ -34,6 +41,7 @@ struct LegPlanner {
   std::vector<double> min_sd_in_any_world(double limit) const;
 
  private:
+  std::optional<planning::Route> search_alone(const planning::SigmaSearch& wanted) const;
   planning::Route with_belief(planning::Route route) const;
   planning::Route cheapest(double weight);
   std::vector<planning::Route> weighted() const;

@@ -9,6 +9,7 @@
 #include <memory>
 
 #include "core/error.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "importers/rasters/dem.hpp"
 #include "planning/clearance.hpp"
@@ -74,7 +75,7 @@ std::string add_clearance(const RouteRequest& request, const RobotMap& map, Rout
     for (RouteStation& station : route.stations) {
       const Eigen::Vector2d at = plan_position(map.frame, station.at.x(), station.at.y());
       station.clearance = planning::clearance_bounds(
-          {at.x(), at.y(), station.yaw}, vehicle,
+          {at.x(), at.y(), station.yaw - grid_rotation(map.frame, at)}, vehicle,
           [&](const Eigen::Vector2d& middle, double half) { return terrain(middle, half); },
           kSds * station.sd, kSds * terrain.height_sd());
       if (!station.clearance)

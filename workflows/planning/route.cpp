@@ -14,16 +14,19 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/robot_log.hpp"
+#include "planning/vehicle.hpp"
 #include "workflows/localization/robot_map.hpp"
 #include "workflows/planning/leg_planner.hpp"
 #include "workflows/planning/path_clearance.hpp"
 #include "workflows/planning/planning_sensor.hpp"
 #include "workflows/planning/route_cells.hpp"
 #include "workflows/planning/route_layers.hpp"
+#include "workflows/planning/route_progress.hpp"
 #include "workflows/sensor_file.hpp"
 
 namespace waymark::workflows {
@@ -45,6 +48,10 @@ void check(const RouteRequest& request) {
   if (objectives != 1)
     refuse(objectives ? "more than one objective is given" : "the route has no objective",
            "pass one of --limit-sigma M, --keep-landmarks N, --weight W, --least-sigma");
+  if (request.by_quality && !(request.keep_landmarks > 0))
+    refuse("--by-quality is about the landmarks to keep in sight",
+           "pass --keep-landmarks N, or leave it out");
+  static_cast<void>(planning::find_vehicle(request.vehicle));  // throws for an unknown one
   check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.speed > 0)) refuse(fmt::format("--speed {:g} is not above 0 m/s", request.speed), "");
   if (request.worlds < 1 || request.alternatives < 1)
@@ -129,8 +136,11 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
     const localization::Pose2 pose = planning::heading_pose(x, y, node.heading);
     const planning::Information& seen = problem.field.get(node.cell, node.heading);
     if (seen.landmarks == 0) route.without_landmarks += length;
-    route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance, pose.yaw,
-                              node.covariance, position_sd(node.covariance), seen.landmarks,
+    const double rotation = grid_rotation(map.frame, {x, y});
+    route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance,
+                              localization::wrap_angle(pose.yaw + rotation),
+                              planning::symmetric(rotate_covariance(node.covariance.matrix(), rotation)),
+                              position_sd(node.covariance), seen.landmarks,
                               important_landmarks(planner, uids, pose)});
   }
   route.final_sd = route.stations.back().sd;
@@ -139,6 +149,17 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
   const std::size_t tenth = std::max<std::size_t>(1, worst.size() / 10);
   for (std::size_t i = 0; i < tenth; ++i) route.worlds_worst_tenth += worst[i] / double(tenth);
   return route;
+}
+
+planning::InformationField compute_field(const planning::RouteCells& cells, const LegPlanner& planner,
+                                         const Callbacks& callbacks) {
+  pipeline::ProgressMeter meter(callbacks.progress, "information", 1);
+  pipeline::UnitProgress field(meter);
+  auto computed =
+      planning::make_information_field(cells, planner.problem.passable, planner.landmarks, planner.sensing,
+                                       [&](double done) { field.advance_to(done); });
+  meter.finish();
+  return computed;
 }
 
 }  // namespace
@@ -171,8 +192,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   planner.sensing.identities_known = request.identities_known;
   planner.sensing.visible =
       planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
-  problem.field =
-      planning::make_information_field(cells, problem.passable, planner.landmarks, planner.sensing);
+  problem.field = compute_field(cells, planner, callbacks);
   double sd = 0.1, yaw_sd = 2 * kRadiansPerDegree;
   planner.odometry = read_odometry(request, map, sd, yaw_sd);
   if (request.start_sd > 0) sd = request.start_sd;
@@ -185,7 +205,13 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   problem.start = {sd * sd, 0, sd * sd, 0, 0, yaw_sd * yaw_sd};
   const planning::Symmetric3 start = problem.start;
 
-  const auto legs_with = [&](auto&& search) {
+  const auto leg_count = static_cast<std::int64_t>(stops.size() - 1);
+  const std::int64_t more_routes = std::min<std::int64_t>(request.alternatives - 1, 1000);
+  RouteProgress progress(callbacks.progress,
+                         leg_count * (1 + planner.max_searches() + kMaxSearches * more_routes));
+  planner.progress = &progress;
+  problem.advanced = [&](double done) { progress.advance(done); };
+  const auto legs_with = [&](int max_searches, auto&& search) {
     std::vector<planning::Route> legs;
     problem.start = start;
     planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
@@ -194,6 +220,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
     for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
       planner.begin_leg(stops[i], stops[i + 1]);
+      progress.begin_leg(max_searches);
       planner.worlds_agree = i == 0;
       if (!std::isfinite(problem.to_go[planning::slot(problem.from)]))
         fail_between(request, points[i], points[i + 1]);
@@ -201,19 +228,22 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
       problem.start = legs.back().nodes.back().covariance;
       problem.heading = legs.back().nodes.back().heading;
+      progress.end_leg();
     }
     problem.start = start;
     return legs;
   };
 
   RouteResult result;
-  result.shortest = describe(planner, map, uids, legs_with([&] { return *planner.search({.labels = 1}); }));
-  result.routes.push_back(describe(planner, map, uids, legs_with([&] { return planner.leg(); })));
+  result.shortest =
+      describe(planner, map, uids, legs_with(1, [&] { return *planner.search({.labels = 1}); }));
+  result.routes.push_back(
+      describe(planner, map, uids, legs_with(planner.max_searches(), [&] { return planner.leg(); })));
   for (std::int64_t i = 1; i < request.alternatives; ++i) {
     // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
     const double limit = 0.9 * result.routes.back().worst_sd;
     bool found = true;
-    const auto legs = legs_with([&] {
+    const auto legs = legs_with(kMaxSearches, [&] {
       auto route = planner.keep(limit);
       found = found && route;
       return route ? *route : *planner.search({.labels = 1});
@@ -233,6 +263,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       result.lower_bound += planning::distances_to(cells, reached, problem.to)[planning::slot(problem.from)];
     }
   }
+  progress.finish();
   const std::string clearance = add_clearance(request, map, result);
   write_routes(request, map.crs(), result);
   const PlannedRoute& best = result.routes.front();

@@ -12,7 +12,7 @@ namespace waymark::workflows {
 /// Request of a route over a map. Positions are in the map's CRS.
 struct RouteRequest {
   std::string map, output;
-  std::string from, to;           ///< "X,Y" or "X,Y,YAW" (degrees from east towards north)
+  std::string from, to;           ///< "X,Y" or "X,Y,YAW" (degrees from the CRS's x axis to its y axis)
   std::vector<std::string> via;   ///< "X,Y", in order
   std::string hazards = "none";   ///< hazard map (.tif), or none
   std::string aoi = {};           ///< polygons: the route stays inside; empty: anywhere
@@ -39,9 +39,9 @@ struct RouteRequest {
 
 /// One row of the layer `route_station`.
 struct RouteStation {
-  Eigen::Vector2d at;  ///< map CRS
-  double distance = 0, yaw = 0;
-  planning::Symmetric3 covariance;
+  Eigen::Vector2d at;            ///< map CRS
+  double distance = 0, yaw = 0;  ///< metres; radians from the first axis of the map's CRS (in degrees: east)
+  planning::Symmetric3 covariance;  ///< along the axes of the map's CRS, metres and radians
   double sd = 0;
   int landmarks = 0;
   std::vector<std::string> important;                       ///< uids of the three that inform most

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "importers/tables/area_of_interest.hpp"
 #include "workflows/parse_number.hpp"
@@ -38,7 +39,7 @@ Waypoint parse_waypoint(const std::string& name, const std::string& text, const 
         fmt::format("{} {} is {:.0f} km from the middle of the map", name, text, point.at.norm() / 1000),
         map.store->path().string(),
         fmt::format("positions are x,y in {}, at most {:.0f} km away", map.crs().id(), kMaxExtent / 1000));
-  if (numbers.size() == 3) point.yaw = numbers[2] * kRadiansPerDegree;
+  if (numbers.size() == 3) point.yaw = numbers[2] * kRadiansPerDegree - grid_rotation(map.frame, point.at);
   point.text = fmt::format("{} {}", name, text);
   return point;
 }

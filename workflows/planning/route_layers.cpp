@@ -79,21 +79,22 @@ geodb::ShapeLayer route_layer(const RouteResult& result, bool is_geographic) {
 }
 
 geodb::ShapeLayer station_layer(const RouteResult& result) {
-  geodb::ShapeLayer layer{.name = "route_station",
-                          .summary = "Stations of the routes, with the ellipse of the position's error",
-                          .kind = geodb::ShapeKind::point,
-                          .columns = {{"route", "", Kind::integer, "Number of the route, from 1"},
-                                      {"distance", "m", Kind::real, "From the start"},
-                                      {"yaw", "rad", Kind::real, "Heading, from east towards north"},
-                                      {"sd_major", "m", Kind::real, "Sd in the worst direction"},
-                                      {"sd_minor", "m", Kind::real, "Sd across it"},
-                                      {"azimuth", "deg", Kind::real, "Worst direction, clockwise from north"},
-                                      {"yaw_sd", "rad", Kind::real, "Sd of the heading"},
-                                      {"landmarks", "", Kind::integer, "Landmarks in sight"},
-                                      {"important", "", Kind::text, "Up to three uids that inform most"},
-                                      {"belly", "m", Kind::real, "Least clearance below the belly, a bound"},
-                                      {"tilt", "deg", Kind::real, "Largest tilt of the vehicle, a bound"}},
-                          .style = {.colour = "#1565c0"}};
+  geodb::ShapeLayer layer{
+      .name = "route_station",
+      .summary = "Stations of the routes, with the ellipse of the position's error",
+      .kind = geodb::ShapeKind::point,
+      .columns = {{"route", "", Kind::integer, "Number of the route, from 1"},
+                  {"distance", "m", Kind::real, "From the start"},
+                  {"yaw", "rad", Kind::real, "Heading, from the x axis of the CRS towards its y axis"},
+                  {"sd_major", "m", Kind::real, "Sd in the worst direction"},
+                  {"sd_minor", "m", Kind::real, "Sd across it"},
+                  {"azimuth", "deg", Kind::real, "Worst direction, clockwise from the y axis of the CRS"},
+                  {"yaw_sd", "rad", Kind::real, "Sd of the heading"},
+                  {"landmarks", "", Kind::integer, "Landmarks in sight"},
+                  {"important", "", Kind::text, "Up to three uids that inform most"},
+                  {"belly", "m", Kind::real, "Least clearance below the belly, a bound"},
+                  {"tilt", "deg", Kind::real, "Largest tilt of the vehicle, a bound"}},
+      .style = {.colour = "#1565c0"}};
   for (std::size_t i = 0; i < result.routes.size(); ++i)
     for (const RouteStation& s : result.routes[i].stations) {
       const Ellipse e = ellipse_of(s.covariance);

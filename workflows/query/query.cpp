@@ -6,11 +6,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
 #include "exporters/vector/vector_format.hpp"
 #include "workflows/parse_number.hpp"
+#include "workflows/query/area_of_map.hpp"
 #include "workflows/query/query_area.hpp"
 #include "workflows/sensor_file.hpp"
 
@@ -73,9 +75,14 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
   }
   set_centre(request, map);
   set_box(request, map);
-  if (!outline_) {
+  if (!request.aoi.empty()) {
+    MapArea area = area_of_map(request.aoi, map.path());
+    inside_ = std::move(area.contains);
+    if (!query_.box) query_.box = area.box;
+  }
+  if (!outline_ && !inside_) {
     query_.limit = request.limit;
-  } else if (query_.nearest) {  // which of the nearest are inside the box is known only afterwards
+  } else if (query_.nearest) {  // which of the nearest are inside is known only afterwards
     limit_ = std::min(limit_, static_cast<std::size_t>(query_.nearest->k));
     query_.nearest->k = map.count();
   }
@@ -110,10 +117,13 @@ void PreparedQuery::set_box(const QueryRequest& request, const geodb::MapStore& 
 
 std::vector<Landmark> PreparedQuery::run(const geodb::MapStore& map) const {
   std::vector<Landmark> found = map.query(query_);
-  if (!outline_) return found;
+  if (!outline_ && !inside_) return found;
   const CrsTransform transform(map.crs(), crs_);
   std::erase_if(found, [&](const Landmark& landmark) {
-    const auto at = transform(landmark.position.xyz.x(), landmark.position.xyz.y());
+    const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
+    if (inside_ && !inside_(x, y)) return true;
+    if (!outline_) return false;
+    const auto at = transform(x, y);
     return !inside(*outline_, {{at.x, at.y, 0}}, crs_);
   });
   found.resize(std::min(found.size(), limit_));

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -19,8 +20,9 @@ struct QueryRequest {
   std::string largest;  ///< feature, or other column of numbers, whose largest values come first
   std::vector<std::string> types, min_features, max_features;  ///< bounds: "prominence=300"
   std::vector<double> bbox;                                    ///< min_x, min_y, max_x, max_y
-  std::vector<double> near;                                    ///< x, y, radius in metres
-  std::vector<double> nearest;                                 ///< x, y, count
+  std::string aoi = {};         ///< file of polygons in any CRS of the body; empty: everywhere
+  std::vector<double> near;     ///< x, y, radius in metres
+  std::vector<double> nearest;  ///< x, y, count
   double min_quality = 0, min_confidence = 0;
   std::int64_t limit = std::numeric_limits<std::int64_t>::max();
   bool wgs84 = false;  ///< returns longitude and latitude, whatever `crs` says
@@ -65,7 +67,8 @@ class PreparedQuery {
   Crs crs_;
   std::shared_ptr<const SensorProfile> sensor_;
   geodb::MapQuery query_;
-  std::optional<geodb::MapQuery::Box> outline_ = {};  ///< in crs_, if that is not the map's
+  std::optional<geodb::MapQuery::Box> outline_ = {};     ///< in crs_, if that is not the map's
+  std::function<bool(double x, double y)> inside_ = {};  ///< in the map's CRS; empty: everywhere
   std::size_t limit_;
 };
 

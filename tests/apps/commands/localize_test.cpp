@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <set>
 #include <sstream>
+#include <tuple>
+#include <vector>
 
 #include "tests/apps/localize_fixture.hpp"
 #include "tests/apps/made_dem.hpp"
@@ -412,6 +417,36 @@ TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
     const Sums stems = sums_by("stems"), poles = sums_by("poles"), all = sums_by("auto");
     EXPECT_GT(all.matched, 1.2 * std::max(stems.matched, poles.matched)) << method;
     EXPECT_LT(all.rejected, 0.1 * all.matched) << method << ": each object is one sighting";
+  }
+}
+
+/// In a south polar map of the Moon the map frame's east is any direction of the grid.
+TEST_F(Localize, WithCrsYawsAndCovariancesAreOfTheGridOfTheMap) {
+  import_rocks("x,y,radius,height\n30000,-52000,0.5,0.6\n30020,-52000,0.5,0.6\n", "IAU_2015:30135");
+  std::string log =
+      R"({"kind":"header","version":1,"start":{"x":-30,"y":20,"yaw":0.3,"sd":0.01,"yaw_sd":0.0001},)"
+      R"("odometry_noise":{"along_per_metre":0.1,"across_per_metre":1e-6,"yaw_per_metre":1e-9,)"
+      R"("yaw_per_radian":1e-9}})"
+      "\n";
+  for (int i = 1; i <= 20; ++i)
+    log += R"({"kind":"step","t":)" + std::to_string(i) + R"(,"dx":1,"dy":0,"dyaw":0})" + "\n";
+  ASSERT_EQ(localize(log, {"--crs"}).code, 0);
+  std::istringstream lines(text_of(track_));
+  std::string line, cell;
+  std::getline(lines, line);
+  std::vector<std::array<double, 10>> rows;
+  while (std::getline(lines, line)) {
+    std::istringstream cells(line);
+    for (double& value : rows.emplace_back()) std::getline(cells, cell, ','), value = std::stod(cell);
+  }
+  ASSERT_GE(rows.size(), 20);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const auto [x, y, yaw] = std::tuple{rows[i][1], rows[i][2], rows[i][6]};
+    const double driven = std::atan2(y - rows[i - 1][2], x - rows[i - 1][1]);
+    EXPECT_NEAR(std::remainder(yaw - driven, 2 * std::numbers::pi), 0, 1e-3) << "row " << i;
+    // The error lies along the drive.
+    const auto [xx, yy, xy] = std::tuple{rows[i][7], rows[i][8], rows[i][9]};
+    EXPECT_NEAR(std::remainder(std::atan2(2 * xy, xx - yy) / 2 - driven, std::numbers::pi), 0, 0.05);
   }
 }
 

@@ -1,8 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <sstream>
+#include <vector>
 
 #include "tests/apps/made_dem.hpp"
 #include "tests/apps/program.hpp"
@@ -239,11 +243,51 @@ TEST_F(RouteCommand, TerrainHidesLandmarks) {
   EXPECT_GT(seen({"--dem", wall, "--sensor-height", "20"}), 2);
 }
 
+/// In a south polar map of the Moon east is any direction of the grid.
+TEST_F(RouteCommand, YawsAreOfTheGridOfTheMap) {
+  std::string rocks = "x,y,radius,height\n";
+  for (int x = -100; x <= 100; x += 20) rocks += std::to_string(30000 + x) + ",-52000,0.5,0.6\n";
+  write_text(folder_ / "polar.csv", rocks);
+  const std::string polar = folder_ / "polar.gpkg";
+  ASSERT_EQ(
+      waymark({"import", folder_ / "polar.csv", "-o", polar, "--type", "rock", "--map-crs", "IAU_2015:30135"})
+          .code,
+      0);
+  const auto stations = [&](const std::string& from, const std::string& output) {
+    const Outcome made = waymark({"route", polar, "--from", from, "--to", "30060,-52010", "--sensor",
+                                  "horizontal_laser", "--view", "360", "--range", "30", "--weight", "1e-9",
+                                  "--cell", "1", "-o", folder_ / output});
+    EXPECT_EQ(made.code, 0) << made.err;
+    std::istringstream lines(text_of(folder_ / output));
+    std::string line, cell;
+    std::getline(lines, line);
+    EXPECT_THAT(line, testing::StartsWith("distance,x,y,yaw,"));
+    std::vector<std::array<double, 4>> rows;
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      for (double& value : rows.emplace_back()) std::getline(cells, cell, ','), value = std::stod(cell);
+    }
+    return rows;
+  };
+  const auto rows = stations("29960,-51990", "polar_route.csv");
+  ASSERT_GT(rows.size(), 20);
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    const double driven = std::atan2(rows[i][2] - rows[i - 1][2], rows[i][1] - rows[i - 1][1]);
+    EXPECT_NEAR(std::remainder(rows[i][3] - driven, 2 * std::numbers::pi), 0, 1e-3) << "station " << i;
+  }
+  // A start that looks backwards along the grid is within the half of a sector of what was asked.
+  const auto turned = stations("29960,-51990,180", "polar_turn.csv");
+  EXPECT_LT(std::abs(std::remainder(turned[0][3] - std::numbers::pi, 2 * std::numbers::pi)),
+            std::numbers::pi / 8 + 1e-3);
+}
+
 TEST_F(RouteCommand, BadRequestsAreRefused) {
   EXPECT_THAT(route({"--weight", "-1"}).err, HasSubstr("--weight -1 is negative"));
   EXPECT_THAT(route({"--weight", "1", "--start-sd", "-1"}).err, HasSubstr("--start-sd -1 is negative"));
   EXPECT_THAT(route({"--weight", "1", "--speed", "0"}).err, HasSubstr("--speed 0 is not above 0 m/s"));
   EXPECT_THAT(route({}).err, HasSubstr("the route has no objective"));
+  EXPECT_THAT(route({"--weight", "1", "--by-quality"}).err, HasSubstr("pass --keep-landmarks N"));
+  EXPECT_THAT(route({"--weight", "1", "--vehicle", "rovver"}).err, HasSubstr("rover"));
   EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the route would replace the map"));
   EXPECT_THAT(route({"--weight", "1", "--limit-sigma", "1"}).err, HasSubstr("more than one objective"));
   EXPECT_THAT(route({"--limit-sigma", "0.01"}).err, HasSubstr("the sd at the start, 0.1 m, exceeds"));

@@ -68,6 +68,12 @@ TEST_F(Trees, OfAFolderOfCompressedPoints) {
   write_text(folder + "/west.laz", laz_bytes(west));
   write_text(folder + "/east.copc.laz", copc_bytes(east, 3));
   ASSERT_EQ(trees({"--las", folder}).code, 0);
+  MadeDem level{.columns = 100, .rows = 100, .geotransform = {499990, 1, 0, 5000090, 0, -1}};
+  level.height = [](int, int) { return 0.0; };
+  const Outcome above =
+      trees({"--las", folder, "--dtm", make_dem(folder_ / "dtm.tif", level), "--crs", "local"}, "above.gpkg");
+  ASSERT_EQ(above.code, 0) << above.err;
+  EXPECT_EQ(json::parse(waymark({"query", folder_ / "above.gpkg", "--format", "json"}).out).size(), 16U);
   const json found = json::parse(waymark({"query", folder_ / "trees.gpkg", "--format", "json"}).out);
   EXPECT_EQ(found.size(), 16U);  // 20 m apart on 80 x 80 m
   EXPECT_THAT(trees({"--las", folder_ / "none.laz"}).err, HasSubstr("none.laz"));

@@ -5,12 +5,14 @@
 #include <ogrsf_frmts.h>
 #include <sqlite3.h>
 
+#include <array>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "exporters/vector/count_rows.hpp"
 #include "exporters/vector/vector_format.hpp"
 #include "geodb/map_store.hpp"
+#include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
 #include "geodb/write_map.hpp"
 #include "tests/exporters/small_map.hpp"
@@ -21,6 +23,7 @@ namespace {
 
 using test::content_of;
 using test::error_of;
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -230,6 +233,56 @@ TEST_F(ExportMap, GeoPackageSubsetIsAMapAgain) {
   EXPECT_EQ(map.count(), 3);
   EXPECT_NEAR(map.find("mt-one")->position.xyz.x(), 405277.1855, 1e-3);
   EXPECT_EQ(map.runs().at(0).command_line, "waymark peaks dem.tif -o map.gpkg");
+}
+
+TEST_F(ExportMap, GeoPackageKeepsShapeLayersOfItsLandmarks) {
+  const Eigen::Vector2d a(-70.01, -32.65), b(-70.0, -32.6), c(-70.02, -32.6);
+  const auto mark = [&](const AttributeValue& uid) { return geodb::Shape{{{{a, b, c}, {}}}, {uid, 2.5}}; };
+  geodb::ShapeLayer rims{.name = "rim",
+                         .summary = "Rims",
+                         .columns = {{"uid", "", AttributeSpec::Kind::text, "Landmark"},
+                                     {"width", "m", AttributeSpec::Kind::real, "Width"}},
+                         .rows = {mark("mt-one"), mark("mt-two"), mark("cr-one"), mark({})}};
+  geodb::ShapeLayer survey{
+      .name = "survey", .summary = "Areas", .rows = {geodb::Shape{{{{a, b, c}, {}}}, {}}}};
+  geodb::write_layers(two, std::array{rims, survey});
+
+  export_map(two, out("all.gpkg"), {});
+  EXPECT_THAT(geodb::validate_map(folder / "all.gpkg"), IsEmpty());
+  EXPECT_THAT(geodb::shape_layers(folder / "all.gpkg"), ElementsAre("rim", "survey"));
+  const geodb::ShapeLayer same = geodb::read_shape_layer(folder / "all.gpkg", "rim");
+  ASSERT_EQ(same.rows.size(), 4u);
+  const geodb::ShapeLayer before = geodb::read_shape_layer(two, "rim");
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_TRUE(same.rows[i].parts == before.rows[i].parts) << i;
+    EXPECT_TRUE(same.rows[i].values == before.rows[i].values) << i;
+  }
+  EXPECT_EQ(same.columns.at(1).unit, "m");
+
+  // Of one type, in another CRS: its own rows and those of no landmark.
+  export_map(two, out("tops.gpkg"), {.types = {"mountain_top"}, .crs = "EPSG:32719"});
+  EXPECT_THAT(geodb::validate_map(folder / "tops.gpkg"), IsEmpty());
+  const geodb::ShapeLayer tops = geodb::read_shape_layer(folder / "tops.gpkg", "rim");
+  ASSERT_EQ(tops.rows.size(), 3u);
+  EXPECT_NEAR(tops.rows[0].parts[0].outer[0].x(), 405277.1855, 1e-3);
+  EXPECT_EQ(geodb::count_shapes(folder / "tops.gpkg", "survey"), 1);
+
+  // Of an area: layers without landmarks are of the whole map.
+  const auto part = export_map(two, out("part.gpkg"), {.inside = [](double x, double) { return x < -70; }});
+  EXPECT_THAT(geodb::validate_map(folder / "part.gpkg"), IsEmpty());
+  EXPECT_THAT(part.warnings, Contains("layers of the whole map are left out: survey"));
+  EXPECT_THAT(geodb::shape_layers(folder / "part.gpkg"), ElementsAre("rim"));
+  const geodb::MapStore store = geodb::MapStore::open(folder / "part.gpkg");
+  EXPECT_TRUE(store.find("mt-one"));
+  EXPECT_FALSE(store.find("mt-two"));
+  for (const ExportedLayer& layer : part.layers)
+    EXPECT_EQ(layer.landmarks, store.count(layer.type)) << layer.type;
+  EXPECT_EQ(geodb::read_shape_layer(folder / "part.gpkg", "rim").rows.size(), 2u);
+}
+
+TEST_F(ExportMap, ACountingAreaIsRefusedWhereItDoesNotApply) {
+  EXPECT_THAT(error_of([&] { export_map(earth, out("tops.geojson"), {.area_km2 = 3}); }),
+              HasSubstr("GeoJSON has no counting area"));
 }
 
 TEST_F(ExportMap, ExistingOutputIsKeptUnlessAllowed) {

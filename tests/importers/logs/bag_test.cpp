@@ -224,6 +224,53 @@ TEST_F(Bag, ReadsTheTopicsThatAreAskedFor) {
   EXPECT_THAT(message_of(native), HasSubstr("only bags of ROS 2"));
 }
 
+TEST_F(Bag, PosesAndTransformsInAFrameOfOdometryAreOdometryIfThereIsNoOther) {
+  const auto steps = [](const RobotLog& log) {
+    std::vector<double> all;
+    for (const LogEvent& event : log.events)
+      if (const auto* step = std::get_if<StepReading>(&event.what)) all.push_back(step->step.x);
+    return all;
+  };
+  const auto moves = [](double t, double x, const std::string& parent, const std::string& child) {
+    MadeMessage frame{
+        "/tf", "tf2_msgs/msg/TFMessage",
+        MadeCdr(false).add(std::uint32_t{1}).header(t, parent).text(child).pose(x, 0, 0, 0).bytes()};
+    return frame;
+  };
+  const MadeBag transforms{moves(1, 0, "odom", "base_footprint"), moves(2, 3, "odom", "base_footprint"),
+                           moves(3, 7, "odom", "base_footprint"), moves(1, 0, "map", "odom"),
+                           moves(2, 50, "map", "odom"),           moves(3, 90, "map", "odom")};
+  const RobotLog moved = read_rosbag2(transforms);
+  EXPECT_EQ(steps(moved), (std::vector<double>{3, 4}));
+  EXPECT_THAT(moved.remarks,
+              Contains(HasSubstr("3 transforms of /tf (odom to base_footprint) are taken for it")));
+
+  MadeBag poses = transforms;
+  for (const bool has_covariance : {true, false})
+    for (const int i : {0, 1}) {
+      poses.push_back(made_pose(false, 1 + i, 5 * i, 0, 0, has_covariance ? "/ekf" : "/plain",
+                                "robot1/odom_combined", has_covariance));
+      poses.push_back(made_pose(false, 1 + i, 40 * i, 0, 0, "/amcl_pose", "map"));
+    }
+  const RobotLog posed = read_rosbag2(poses);
+  EXPECT_EQ(steps(posed), (std::vector<double>{5}));
+  EXPECT_THAT(posed.remarks,
+              Contains(HasSubstr("2 poses of /ekf in the frame robot1/odom_combined are taken as")));
+  EXPECT_THAT(
+      posed.remarks,
+      Contains(HasSubstr("4 messages of type geometry_msgs/msg/PoseWithCovarianceStamped of /amcl_pose "
+                         "are skipped")));
+  write_rosbag2(file("asked.db3"), poses);
+  EXPECT_EQ(steps(importers::import_log(file("asked.db3"), {}, {.topics = {"/plain"}})),
+            (std::vector<double>{5}));
+  EXPECT_THAT(steps(importers::import_log(file("asked.db3"), {}, {.topics = {"/amcl_pose"}})), Contains(40));
+
+  poses.push_back(made_odometry(false, 1, 0, 0, 0)), poses.push_back(made_odometry(false, 2, 9, 0, 0));
+  const RobotLog both = read_rosbag2(poses);
+  EXPECT_EQ(steps(both), (std::vector<double>{9}));
+  EXPECT_THAT(both.remarks, Contains(HasSubstr("of /ekf are skipped")));
+}
+
 TEST_F(Bag, RangesBelowTheMinimumAndWithoutReturnAreNone) {
   const float none = std::numeric_limits<float>::quiet_NaN();
   const RobotLog log = read_rosbag2({made_scan(false, 1, 0, 0.1, {0.05f, none, 2})});

@@ -102,6 +102,17 @@ TEST(Canopy, FeetBecomeMetres) {
   EXPECT_NEAR(importers::import_canopy({.chm = {write_raster(feet)}})->read({20, 20, 1, 1})(0, 0), 60, 1e-4);
 }
 
+TEST(Canopy, TerrainOfFeetIsStoredInMetres) {
+  RasterFile surface = raster("dsm_feet", [](double, double) { return 1060; }),
+             ground = raster("dtm_feet", [](double, double) { return 1000; });
+  surface.crs = ground.crs = "EPSG:2264";
+  const auto canopy =
+      importers::import_canopy({.dsm = {write_raster(surface)}, .dtm = {write_raster(ground)}});
+  EXPECT_NEAR(canopy->read({20, 20, 1, 1})(0, 0), 60 * 0.3048006, 1e-3);
+  EXPECT_NEAR(canopy->ground_elevation(20, 20), 304.8006, 1e-3);
+  EXPECT_NEAR(canopy->terrain()->read({20, 20, 1, 1})(0, 0), 304.8006, 1e-3);
+}
+
 TEST(Canopy, WithoutCrsIsMetres) {
   RasterFile plain = raster("plain", [](double, double) { return 10; });
   plain.crs = "";

@@ -7,6 +7,7 @@
 
 #include "core/random.hpp"
 #include "importers/points/canopy.hpp"
+#include "importers/points/canopy_codec.hpp"
 #include "importers/points/las_catalogue.hpp"
 #include "pipeline/forest/find_trees.hpp"
 #include "tests/importers/raster_maker.hpp"
@@ -209,6 +210,76 @@ TEST(PointCanopy, FeetBecomeMetres) {
   const Grid<float> heights = canopy->read({0, 0, 120, 120});
   for (const float h : heights.cells()) highest = std::max(highest, h);
   EXPECT_NEAR(highest, 12, 0.8);
+}
+
+// The slope under the cones on cells of 2 m, from x = 500000 + `west` on, raised by `offset`.
+std::string slope(double west = -10, double offset = 0, const std::string& name = "slope.tif") {
+  Grid<double> cells(40, 40);
+  for (std::int64_t r = 0; r < 40; ++r)
+    for (std::int64_t c = 0; c < 40; ++c)
+      cells(c, r) = 300 + offset + 0.3 * (west + 1 + 2 * static_cast<double>(c));
+  return write_raster({.path = "/vsimem/" + name,
+                       .cells = cells,
+                       .type = GDT_Float64,
+                       .transform = GeoTransform{500000 + west, 2, 0, 5000070, 0, -2}});
+}
+
+TEST(PointCanopy, HeightsAreAboveTheTerrainModelThatIsGiven) {
+  auto points = cones();
+  for (importers::LasPoint& p : points) p.classification = 1;
+  const auto by_terrain = [&](const std::string& name, std::vector<importers::LasPoint> all,
+                              const std::string& dtm) {
+    return importers::import_canopy(
+        {.dtm = {dtm}, .las = {written({.name = name, .points = std::move(all)})}});
+  };
+  const auto canopy = by_terrain("plain.las", points, slope());
+  EXPECT_THAT(canopy->warnings(), ::testing::IsEmpty());
+  ASSERT_TRUE(canopy->terrain());
+  const GridGeometry& grid = canopy->geometry();
+  const Window all{0, 0, grid.columns, grid.rows};
+  const auto trees = find_trees(*canopy, all, {.forest = forest_preset("conifer")});
+  ASSERT_EQ(trees.size(), 3U);
+  for (const DetectedTree& tree : trees) EXPECT_NEAR(tree.height, 12, 0.8);
+  // On a plane the terrain is exact at any cell, and bare ground has no height, at the borders of blocks too.
+  const Grid<float> heights = canopy->read(all);
+  for (std::int64_t c = 4; c < grid.columns - 4; ++c) {
+    EXPECT_NEAR(canopy->ground_elevation(c, 2), 300 + 0.3 * (grid.where.x(static_cast<double>(c)) - 500000),
+                1e-3);
+    EXPECT_NEAR(heights(c, 60), 0, 0.01) << c;
+  }
+  // A job that continues opens the same canopy.
+  const Canopies stored = importers::decode_canopies(importers::encode_canopies({canopy}));
+  EXPECT_EQ(stored[0]->read(all), heights);
+  // Where the terrain ends, nothing is known.
+  const auto half = by_terrain("plain.las", points, slope(34, 0, "half.tif"));
+  EXPECT_THAT(half->warnings(), Contains(HasSubstr("does not cover all points")));
+  const Grid<float> known = half->read(all);
+  EXPECT_EQ(known(20, 60), kNoCanopy);
+  EXPECT_NEAR(known(grid.columns - 10, 60), 0, 0.01);
+  EXPECT_EQ(find_trees(*half, all, {.forest = forest_preset("conifer")}).size(), 1U);
+}
+
+TEST(PointCanopy, ATerrainOfAnotherDatumIsRefused) {
+  const auto points = cones();
+  auto plain = points;
+  for (importers::LasPoint& p : plain) p.classification = 1;
+  const auto said = [&](const std::vector<importers::LasPoint>& all, double offset) {
+    const std::string las = written({.points = all}), dtm = slope(-10, offset);
+    return message_of([&] { importers::import_canopy({.dtm = {dtm}, .las = {las}}); });
+  };
+  EXPECT_THAT(said(points, -47),
+              AllOf(HasSubstr("the ground points of the laser lie 47.0 m above the terrain"),
+                    HasSubstr("above the ellipsoid")));
+  EXPECT_THAT(said(plain, 47),
+              AllOf(HasSubstr("the lowest points of the laser lie 47"), HasSubstr("below the terrain")));
+  const auto near =
+      importers::import_canopy({.dtm = {slope(-10, 2.5)}, .las = {written({.points = points})}});
+  EXPECT_THAT(near->warnings(), Contains(HasSubstr("lie 2.5 m below the terrain model")));
+  write_raster({.path = "/vsimem/far.tif", .cells = Grid<double>(4, 4, 300.0)});
+  EXPECT_THAT(message_of([&] {
+                importers::import_canopy({.dtm = {"/vsimem/far.tif"}, .las = {written({.points = points})}});
+              }),
+              HasSubstr("do not overlap"));
 }
 
 // The cones as records; 0.001 m from 500000 and 5000000.

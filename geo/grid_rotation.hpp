@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+#include <Eigen/Core>
+#include "geo/local_frame.hpp"
+namespace waymark::inline geo {
+
+/// Returns the rotation from the axes of the map frame to those of the map's CRS at a position of the map
+/// frame, radians, counter-clockwise.
+/// - It is added to a yaw in the map frame: a pose in the CRS points along its own track.
+/// - In a projected CRS it is the meridian convergence, and any angle in a polar one; in degrees the axes are
+///   east and north of the position; in a local CRS it is 0.
+/// - In a projection that is not conformal it is the rotation nearest to the distorted axes.
+double grid_rotation(const LocalFrame& frame, const Eigen::Vector2d& position);
+
+/// Returns the covariance of x, y, yaw along axes rotated by `rotation`; metres and radians stay.
+Eigen::Matrix3d rotate_covariance(const Eigen::Matrix3d& covariance, double rotation);
+
+}  // namespace waymark::inline geo
