@@ -73,19 +73,6 @@ ProjObject parse(std::string_view definition) {
   return crs;
 }
 
-// Restores the code of a planetary CRS, which GeoTIFF drops. Only a match of 100 % is accepted: equal in
-// every number and in name.
-ProjObject catalogued(ProjObject crs) {
-  if (proj_get_id_code(crs.get(), 0)) return crs;
-  int* confidence = nullptr;
-  const std::unique_ptr<PJ_OBJ_LIST, decltype(&proj_list_destroy)> found(
-      proj_identify(context(), crs.get(), nullptr, nullptr, &confidence), &proj_list_destroy);
-  const std::unique_ptr<int, decltype(&proj_int_list_destroy)> owner(confidence, &proj_int_list_destroy);
-  if (found && proj_list_get_count(found.get()) > 0 && confidence[0] == 100)
-    return ProjObject(proj_list_get(context(), found.get(), 0));
-  return crs;
-}
-
 struct Axis {
   std::string direction, unit;
   double factor = 1;  ///< to metres or radians
@@ -100,6 +87,42 @@ Axis axis_of(const PJ* crs, int index) {
                                         &axis.factor, &unit, nullptr, nullptr))
     return axis;
   return {text_or_empty(direction), text_or_empty(unit), axis.factor};
+}
+
+bool are_equivalent(const PJ* a, const PJ* b) {
+  return proj_is_equivalent_to_with_ctx(context(), a, b, PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS);
+}
+
+// Returns whether two projected CRSs have the same numbers whatever their axes are called: of one in a
+// GeoTIFF about a pole, east is "north along the meridian of 90 degrees".
+bool are_same_projection(const PJ* a, const PJ* b) {
+  if (proj_get_type(a) != PJ_TYPE_PROJECTED_CRS || proj_get_type(b) != PJ_TYPE_PROJECTED_CRS) return false;
+  const ProjObject conversion_a(proj_crs_get_coordoperation(context(), a));
+  const ProjObject conversion_b(proj_crs_get_coordoperation(context(), b));
+  const ProjObject base_a(proj_crs_get_geodetic_crs(context(), a));
+  const ProjObject base_b(proj_crs_get_geodetic_crs(context(), b));
+  return conversion_a && conversion_b && base_a && base_b &&
+         are_equivalent(conversion_a.get(), conversion_b.get()) &&
+         are_equivalent(base_a.get(), base_b.get()) && axis_of(a, 0).factor == axis_of(b, 0).factor;
+}
+
+// Restores the code of a planetary CRS, which GeoTIFF drops. Only a match in every number and in name is
+// accepted.
+ProjObject catalogued(ProjObject crs) {
+  if (proj_get_id_code(crs.get(), 0)) return crs;
+  int* confidence = nullptr;
+  const std::unique_ptr<PJ_OBJ_LIST, decltype(&proj_list_destroy)> found(
+      proj_identify(context(), crs.get(), nullptr, nullptr, &confidence), &proj_list_destroy);
+  const std::unique_ptr<int, decltype(&proj_int_list_destroy)> owner(confidence, &proj_int_list_destroy);
+  if (!found) return crs;
+  const std::string name = text_or_empty(proj_get_name(crs.get()));
+  for (int i = 0; i < proj_list_get_count(found.get()); ++i) {
+    ProjObject one(proj_list_get(context(), found.get(), i));
+    if ((i == 0 && confidence[0] == 100) ||
+        (text_or_empty(proj_get_name(one.get())) == name && are_same_projection(crs.get(), one.get())))
+      return one;
+  }
+  return crs;
 }
 
 Body body_of(const PJ* crs) {
@@ -206,8 +229,8 @@ const Body& Crs::body() const {
 bool Crs::same_as(const Crs& other) const {
   if (wkt2() == other.wkt2()) return true;
   if (kind() != other.kind()) return false;
-  return proj_is_equivalent_to_with_ctx(context(), parse(wkt2()).get(), parse(other.wkt2()).get(),
-                                        PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS);
+  const ProjObject a = parse(wkt2()), b = parse(other.wkt2());
+  return are_equivalent(a.get(), b.get()) || are_same_projection(a.get(), b.get());
 }
 
 Crs geographic_crs(const Crs& crs) {

@@ -48,6 +48,33 @@ TEST(Crs, RecoversThePlanetaryCodeThatGeoTiffDrops) {
   EXPECT_EQ(Crs::from_text(wkt).id(), "IAU_2015:49910");
 }
 
+/// As GDAL reads it from a GeoTIFF: about a pole, east is "north along the meridian of 90 degrees".
+TEST(Crs, OfAPoleIsTheSameWhateverItsAxesAreCalled) {
+  for (const auto& [code, pole] : {std::pair{"IAU_2015:49935", -90}, std::pair{"IAU_2015:49930", 90}}) {
+    const Crs catalogue = Crs::from_text(code);
+    std::string text = catalogue.wkt2();
+    const auto replace = [&](const std::string& part, const std::string& by) {
+      const auto at = text.find(part);
+      ASSERT_NE(at, std::string::npos) << text;
+      text.replace(at, part.size(), by);
+    };
+    const std::string to_pole = pole < 0 ? "north" : "south";
+    const auto axis = [&](int meridian) {
+      return to_pole + ",MERIDIAN[" + std::to_string(meridian) + ",ANGLEUNIT[\"degree\",0.0174532925199433]]";
+    };
+    replace("AXIS[\"(E)\",east", "AXIS[\"(E)\"," + axis(90));
+    replace("AXIS[\"(N)\",north", "AXIS[\"(N)\"," + axis(pole < 0 ? 0 : 180));
+    const auto id = text.rfind(",ID[");
+    text.erase(id, text.size() - 1 - id);
+    const Crs geotiff = Crs::from_text(text);
+    EXPECT_EQ(geotiff.id(), code);
+    EXPECT_TRUE(geotiff.same_as(catalogue));
+    EXPECT_TRUE(catalogue.same_as(geotiff));
+  }
+  EXPECT_FALSE(Crs::from_text("IAU_2015:49935").same_as(Crs::from_text("IAU_2015:49930")));
+  EXPECT_FALSE(Crs::from_text("EPSG:5513").same_as(Crs::from_text("EPSG:5514"))) << "one counts to the south";
+}
+
 TEST(Crs, PreservesAnUnknownDefinitionUnderItsName) {
   const Crs crs = Crs::from_text("+proj=eqc +R=1000000 +units=m +no_defs +type=crs");
   EXPECT_EQ(crs.authority(), "");
