@@ -52,7 +52,7 @@ struct Landmark {
   std::string uid;  ///< stable over runs, tiles and threads; see assign_uids
   TypeId type = 0;
   Point<MapCrs> position;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< east, north, up; square metres
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y of the map CRS, up; square metres
   FeatureSet features;                                   ///< in the order of the type's features
   AttributeSet attributes;                               ///< in the order of the type's attributes
   Quality quality;

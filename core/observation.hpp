@@ -17,7 +17,7 @@ struct Observation {
   std::string source;                    ///< image name, or the DEM
   std::optional<Eigen::Vector2d> pixel;  ///< column, row; (0, 0) is the centre of the first pixel
   Point<MapCrs> position;
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< east, north, up; square metres
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< x, y of the map CRS, up; square metres
   double confidence = 1;                                 ///< detection quality q(d), (0, 1]
   FeatureSet features;
   std::string rejected;  ///< reason; empty if accepted

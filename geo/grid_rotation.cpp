@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "geo/grid_rotation.hpp"
 
-#include <Eigen/Geometry>
 #include <cmath>
 
 #include "core/units.hpp"
@@ -31,13 +30,6 @@ double grid_rotation(const LocalFrame& frame, const Eigen::Vector2d& position) {
   };
   const Eigen::Vector2d u = along({kStep, 0}), v = along({0, kStep});
   return std::atan2(u.y() - v.x(), u.x() + v.y());  // polar decomposition
-}
-
-Eigen::Matrix3d rotate_covariance(const Eigen::Matrix3d& covariance, double rotation) {
-  if (rotation == 0) return covariance;
-  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  turn.topLeftCorner<2, 2>() = Eigen::Rotation2Dd(rotation).toRotationMatrix();
-  return turn * covariance * turn.transpose();
 }
 
 }  // namespace waymark::inline geo

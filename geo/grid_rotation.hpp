@@ -12,7 +12,4 @@ namespace waymark::inline geo {
 /// - In a projection that is not conformal it is the rotation nearest to the distorted axes.
 double grid_rotation(const LocalFrame& frame, const Eigen::Vector2d& position);
 
-/// Returns the covariance of x, y, yaw along axes rotated by `rotation`; metres and radians stay.
-Eigen::Matrix3d rotate_covariance(const Eigen::Matrix3d& covariance, double rotation);
-
 }  // namespace waymark::inline geo

@@ -7,6 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "geo/grid_rotation.hpp"
 #include "geo/point_at_height.hpp"
 
 namespace waymark::localization {
@@ -156,7 +157,7 @@ void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
   if (!log.in_crs) return;
   const auto place = [&](Pose2& pose) {
     const Eigen::Vector2d at = placed(pose.x, pose.y);
-    pose.x = at.x(), pose.y = at.y();
+    pose = {at.x(), at.y(), wrap_angle(pose.yaw - grid_rotation(frame, at))};
   };
   for (StampedPose& p : log.truth) place(p.pose);
   if (log.start) place(*log.start);

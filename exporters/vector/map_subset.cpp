@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,7 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/rotate_axes.hpp"
 #include "exporters/vector/reproject.hpp"
+#include "geo/axes_rotation.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -18,12 +21,18 @@ namespace {
 void reproject(std::vector<geodb::ImageRecord>& images, const Crs& from, const Crs& to) {
   if (from.same_as(to)) return;
   const CrsTransform transform(from, to);
-  for (geodb::ImageRecord& image : images)
+  for (geodb::ImageRecord& image : images) {
+    if (image.sun_azimuth && !image.footprint.empty()) {
+      const Eigen::Vector2d& at = image.footprint.front().front();
+      const Radians turn{axes_rotation(transform, from, to, at.x(), at.y())};
+      image.sun_azimuth->value = std::fmod(image.sun_azimuth->value - to_degrees(turn).value + 720, 360);
+    }
     for (auto& ring : image.footprint)
       for (Eigen::Vector2d& corner : ring) {
         const auto there = transform(corner.x(), corner.y());
         corner = {there.x, there.y};
       }
+  }
 }
 
 /// Landmarks and observations of some types in another CRS, read from a map range by range.
@@ -109,7 +118,10 @@ class SubsetReader {
     if (types_.find(type) == nullptr) return false;
     seen.type = types_.id(type);
     if (transform_) {
-      const auto there = (*transform_)(seen.position.xyz.x(), seen.position.xyz.y());
+      const Eigen::Vector3d& at = seen.position.xyz;
+      rotate_axes(seen, types_[seen.type].features,
+                  axes_rotation(*transform_, map_->crs(), crs_, at.x(), at.y()));
+      const auto there = (*transform_)(at.x(), at.y());
       seen.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
     }
     return seen.position.xyz.head<2>().allFinite();

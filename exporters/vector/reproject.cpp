@@ -5,6 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "core/rotate_axes.hpp"
+#include "geo/axes_rotation.hpp"
+
 namespace waymark::exporters {
 namespace {
 
@@ -44,7 +47,9 @@ Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type,
   const CrsTransform transform(from, to);
   const auto pairs = position_pairs(type);
   for (Landmark& landmark : landmarks) {
-    const auto there = transform(landmark.position.xyz.x(), landmark.position.xyz.y());
+    const Eigen::Vector3d& at = landmark.position.xyz;
+    rotate_axes(landmark, type.features, axes_rotation(transform, from, to, at.x(), at.y()));
+    const auto there = transform(at.x(), at.y());
     landmark.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
     for (const Pair& pair : pairs) reproject(landmark.attributes, pair, transform);
   }

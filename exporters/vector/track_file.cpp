@@ -14,6 +14,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/output_error.hpp"
+#include "core/rotate_axes.hpp"
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
 #include "exporters/vector/track_formats.hpp"
@@ -49,7 +50,7 @@ Values values_of(const localization::TrackRow& row, const LocalFrame* frame, boo
     const double rotation = grid_rotation(*frame, row.at.pose.at());
     at = point_of_pose(*frame, at).xyz;
     yaw = localization::wrap_angle(yaw + rotation);
-    c = rotate_covariance(c, rotation);
+    c = rotate_axes(c, rotation);
   }
   return {row.t,
           at.x(),

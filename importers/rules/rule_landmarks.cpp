@@ -141,7 +141,8 @@ class RuleImport {
                                 : frame_.back(shape.at);
     if (rule.z) landmark.position.xyz.z() = rule.z->value(element.tags);
     if (std::isnan(landmark.position.xyz.z())) landmark.position.xyz.z() = 0;
-    std::string reason = positions_.transform_to_map(landmark.position);
+    std::string reason =
+        positions_.transform_to_map(landmark, types_[rule.type].features, AngleReference::true_north);
     if (reason.empty()) reason = find_implausibility(types_[rule.type], landmark);
     if (!reason.empty()) {
       ++result_.rejected_by_reason[reason];

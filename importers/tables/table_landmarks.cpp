@@ -245,7 +245,9 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
       const auto own = bindings_of_type.find(*type);
       const Cells cells(table, own == bindings_of_type.end() ? bindings : own->second);
       Landmark landmark = read_landmark(cells, row, types[*type], *type);
-      if (const std::string nowhere = positions.transform_to_map(landmark.position); !nowhere.empty()) {
+      const std::vector<FeatureSpec>& specs = types[*type].features;
+      if (const std::string nowhere = positions.transform_to_map(landmark, specs, AngleReference::table);
+          !nowhere.empty()) {
         rejections.add(row, nowhere);
       } else if (const std::string reason = find_implausibility(types[*type], landmark); !reason.empty()) {
         rejections.add(row, landmark, reason);

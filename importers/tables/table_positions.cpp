@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/rotate_axes.hpp"
+#include "geo/axes_rotation.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -33,6 +35,7 @@ TablePositions::TablePositions(const TableHeader& table, const std::string& tabl
   if (guessed_ && !table_.same_as(map_))
     notes_.push_back(
         fmt::format("longitudes and latitudes are assumed to be in {}; override with --crs", table_.id()));
+  if (table_.kind() == CrsKind::projected) to_degrees_.emplace(table_, geographic_crs(table_));
   if (table_.same_as(map_)) return;
   try {
     transform_.emplace(table_, map_);
@@ -57,6 +60,23 @@ std::string TablePositions::transform_to_map(Point<MapCrs>& position) {
   if (!std::isfinite(there.x) || !std::isfinite(there.y)) return "no position in " + map_.id();
   position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
   return {};
+}
+
+std::string TablePositions::transform_to_map(Landmark& landmark, std::span<const FeatureSpec> specs,
+                                             AngleReference angles) {
+  const Point<MapCrs> of_table = landmark.position;
+  std::string reason = transform_to_map(landmark.position);
+  if (reason.empty()) rotate_axes(landmark, specs, rotation_to_map(of_table, angles));
+  return reason;
+}
+
+double TablePositions::rotation_to_map(const Point<MapCrs>& of_table, AngleReference angles) const {
+  const double x = of_table.xyz.x(), y = of_table.xyz.y();
+  double rotation = 0;
+  if (angles == AngleReference::true_north && to_degrees_)
+    rotation -= axes_rotation(*to_degrees_, table_, geographic_crs(table_), x, y);
+  if (transform_) rotation += axes_rotation(*transform_, table_, map_, x, y);
+  return rotation;
 }
 
 std::vector<std::string> TablePositions::warnings() const {

@@ -2,12 +2,18 @@
 #pragma once
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
+#include "core/feature.hpp"
 #include "core/frames.hpp"
+#include "core/landmark.hpp"
 #include "geo/crs.hpp"
 #include "importers/tables/table.hpp"
 namespace waymark::importers {
+
+/// Axes along which a table states covariances and angles.
+enum class AngleReference { table, true_north };
 
 /// Transforms the positions of a table to the map.
 class TablePositions {
@@ -23,12 +29,17 @@ class TablePositions {
   const Crs& map_crs() const { return map_; }
   /// Transforms the position. Returns the reason if that is impossible, else an empty text.
   std::string transform_to_map(Point<MapCrs>& position);
+  /// Transforms the position, the covariance and the angles among the features, likewise.
+  std::string transform_to_map(Landmark& landmark, std::span<const FeatureSpec> specs, AngleReference angles);
   std::vector<std::string> warnings() const;
 
  private:
+  double rotation_to_map(const Point<MapCrs>& of_table, AngleReference angles) const;
+
   Crs table_ = Crs::local(), map_ = Crs::local();
   std::optional<CrsTransform> transform_;
-  bool guessed_ = false;  // the table names no CRS: the map's is assumed
+  std::optional<CrsTransform> to_degrees_;  // of the table, if its axes are not east and north
+  bool guessed_ = false;                    // the table names no CRS: the map's is assumed
   std::vector<std::string> notes_;
   std::int64_t positions_ = 0, like_degrees_ = 0;
 };

@@ -6,6 +6,8 @@
 
 #include "core/error.hpp"
 #include "core/random.hpp"
+#include "core/rotate_axes.hpp"
+#include "geo/grid_rotation.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -45,14 +47,17 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   Point<MapCrs> ground = landmark.position;
   if (!std::isfinite(ground.xyz.z())) ground.xyz.z() = 0;
   robots.at = frame.map_frame_from_crs(ground).xyz.head<2>();
-  robots.covariance = usable(landmark.covariance);
+  const double rotation = -grid_rotation(frame, robots.at);
+  robots.covariance = usable(rotate_axes(landmark.covariance, rotation));
   robots.type = landmark.type;
   const double quality = (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark))
                              .value_or(landmark.quality.visible > 0 ? kUnassessedQuality : 1);
   robots.paper_quality = std::clamp(quality, 1e-3, 1.0);
   robots.quality =
       std::isfinite(landmark.confidence) ? std::clamp(landmark.confidence, 1e-3, 1.0) : robots.paper_quality;
-  robots.features = known_features(landmark.features);
+  FeatureSet features = landmark.features;
+  rotate_axes(features, type.features, rotation);
+  robots.features = known_features(features);
   for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i)
     if (type.features[i].name == type.body.feature && landmark.features[i].value > 0)
       robots.diameter = 2 * type.body.radius_per_value * landmark.features[i].value;

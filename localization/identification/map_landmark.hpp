@@ -13,7 +13,8 @@ using LandmarkKey = std::uint64_t;
 /// Returns the key of a uid.
 LandmarkKey landmark_key(std::string_view uid);
 
-/// A landmark as localization uses it: in the plane of the map frame, metres.
+/// A landmark as localization uses it: in the plane of the map frame, metres. Covariance and directions are
+/// along east and north of the frame, not along the axes of the map's CRS.
 struct MapLandmark {
   LandmarkKey key = 0;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();

@@ -43,13 +43,5 @@ TEST(GridRotation, OfALocalMapIsNone) {
   EXPECT_EQ(grid_rotation(LocalFrame(Crs::local(), {{5, 6, 0}}), {100, 100}), 0);
 }
 
-TEST(GridRotation, TurnsACovarianceWithItsAxes) {
-  Eigen::Matrix3d c;
-  c << 4, 0, 0.5, 0, 1, 0.25, 0.5, 0.25, 0.01;
-  Eigen::Matrix3d expected;  // by 90 degrees, x becomes y
-  expected << 1, 0, -0.25, 0, 4, 0.5, -0.25, 0.5, 0.01;
-  EXPECT_LE((rotate_covariance(c, 90 * kDegree) - expected).norm(), 1e-12);
-}
-
 }  // namespace
 }  // namespace waymark::test

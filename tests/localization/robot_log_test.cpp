@@ -18,6 +18,21 @@ SightingSet one(double range, double bearing) {
   return {{}, {seen_at(range, bearing)}};
 }
 
+/// South polar stereographic, at 90 degrees east: x grows to the north. The robot drives along x.
+TEST(RobotLog, YawsAlongTheAxesOfACrsAreTurnedToTheMapFrame) {
+  const Crs polar = Crs::from_text("IAU_2015:30135");
+  const auto at = CrsTransform(geographic_crs(polar), polar)(90, -89);
+  RobotLog log;
+  log.in_crs = true;
+  log.start = Pose2{at.x, at.y, 0};
+  log.truth = {{0, *log.start}, {1, Pose2{at.x + 10, at.y, 0}}};
+  convert_to_map_frame(log, LocalFrame(polar, {{at.x, at.y, 0}}));
+  EXPECT_NEAR(log.start->yaw, std::numbers::pi / 2, 1e-6);
+  const Eigen::Vector2d along = log.truth[1].pose.at() - log.truth[0].pose.at();
+  EXPECT_NEAR(along.y(), 10, 0.1);
+  EXPECT_NEAR(std::atan2(along.y(), along.x()), log.truth[1].pose.yaw, 1e-4) << "it drives ahead";
+}
+
 TEST(RepeatedSightings, ASecondLookSaysWhatItsCorrelationLeaves) {
   RepeatedSightings repeated({.range = 3, .bearing = 1});
   SightingSet first = one(5, 0.2);

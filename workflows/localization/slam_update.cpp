@@ -13,6 +13,8 @@
 #include "core/error.hpp"
 #include "core/json_text.hpp"
 #include "core/landmark.hpp"
+#include "core/rotate_axes.hpp"
+#include "geo/grid_rotation.hpp"
 #include "geodb/update_map.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
@@ -48,6 +50,23 @@ FeatureValue refined_feature(const FeatureValue& of_map, double of_drive, Scale 
   refined.variance = ((n - 1) * of_map.variance + n * a * a + b * b) / n;
   refined.observations = of_map.observations + 1;
   return refined;
+}
+
+/// Returns a landmark with covariance and angles along the axes of the map's CRS; its position stays in the
+/// map frame.
+localization::SlamLandmark along_crs_axes(const localization::SlamLandmark& seen, const LandmarkType& type,
+                                          const LocalFrame& frame) {
+  localization::SlamLandmark turned = seen;
+  const double rotation = grid_rotation(frame, seen.at);
+  if (rotation == 0) return turned;
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  covariance.topLeftCorner<2, 2>() = seen.covariance;
+  turned.covariance = rotate_axes(covariance, rotation).topLeftCorner<2, 2>();
+  for (localization::KnownFeatures& look : turned.feature_samples)
+    for (std::size_t i = 0; i < std::min(type.features.size(), localization::kMaxFeatures); ++i)
+      if (look.known(i) && is_angle(type.features[i].scale))
+        look.value[i] = difference(look.value[i], rotation, type.features[i].scale);
+  return turned;
 }
 
 void add_features(const localization::SlamLandmark& seen, const LandmarkType& type, Landmark& into) {
@@ -168,7 +187,7 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
   const TypeRegistry& types = map.types();
   std::unordered_map<localization::LandmarkKey, Landmark> of_map;
   for (Landmark& l : map.store->query({})) of_map.emplace(localization::landmark_key(l.uid), std::move(l));
-  std::vector<const localization::SlamLandmark*> seen_of;
+  std::vector<localization::SlamLandmark> seen_of;
   std::optional<TypeId> fallback = find_self_identifying_type(types);
   if (!fallback && types.size() == 1) fallback = TypeId{0};
   for (const localization::SlamLandmark& l : landmarks) {
@@ -176,12 +195,14 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
       const auto known = of_map.find(l.key.value_or(0));
       if (known == of_map.end() || l.expected == 0) continue;
       Landmark changed = known->second;
-      if (l.matches > 0) {
-        set_position(l, map.frame, changed, false);
-        add_features(l, types[changed.type], changed);
-      }
       add_counts(l, changed);
-      if (l.matches > 0) update.evidence.push_back(make_evidence(changed, l, types[changed.type], source));
+      if (l.matches > 0) {
+        const LandmarkType& type = types[changed.type];
+        const localization::SlamLandmark seen = along_crs_axes(l, type, map.frame);
+        set_position(seen, map.frame, changed, false);
+        add_features(seen, type, changed);
+        update.evidence.push_back(make_evidence(changed, seen, type, source));
+      }
       update.changed.push_back(std::move(changed));
       continue;
     }
@@ -193,21 +214,22 @@ SlamUpdate make_slam_update(std::span<const localization::SlamLandmark> landmark
     }
     Landmark added;
     added.type = typed ? *l.type : *fallback;
-    set_position(l, map.frame, added, true);
-    add_features(l, types[added.type], added);
+    localization::SlamLandmark seen = along_crs_axes(l, types[added.type], map.frame);
+    set_position(seen, map.frame, added, true);
+    add_features(seen, types[added.type], added);
     added.attributes.resize(types[added.type].attributes.size());
     add_counts(l, added);
     added.observations = 1;
     update.added.push_back(std::move(added));
-    seen_of.push_back(&l);
+    seen_of.push_back(std::move(seen));
   }
   assign_uids(types, map.crs(), update.added);
   for (std::size_t i = 0; i < update.added.size(); ++i) {
     Landmark& added = update.added[i];
-    const auto name = names.find(seen_of[i]->key.value_or(0));
-    if (seen_of[i]->key && name != names.end()) added.uid = name->second;
+    const auto name = names.find(seen_of[i].key.value_or(0));
+    if (seen_of[i].key && name != names.end()) added.uid = name->second;
     while (of_map.contains(localization::landmark_key(added.uid))) added.uid += "-s";
-    update.evidence.push_back(make_evidence(added, *seen_of[i], types[added.type], source));
+    update.evidence.push_back(make_evidence(added, seen_of[i], types[added.type], source));
   }
   return update;
 }

@@ -11,9 +11,11 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "core/rotate_axes.hpp"
 #include "exporters/raster/cog_stream.hpp"
 #include "exporters/raster/occupancy_map.hpp"
 #include "exporters/report/counting_area.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/metric_crs.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/rasters/dem.hpp"
@@ -70,7 +72,9 @@ SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const plann
   for (const LandmarkType& type : map.types())
     map.visit(type.name, [&](Landmark&& landmark) {
       if (transform) {
-        const auto at = (*transform)(landmark.position.xyz.x(), landmark.position.xyz.y());
+        const Eigen::Vector3d own = landmark.position.xyz;
+        rotate_axes(landmark, type.features, axes_rotation(*transform, map.crs(), dem, own.x(), own.y()));
+        const auto at = (*transform)(own.x(), own.y());
         if (!std::isfinite(at.x)) return;
         landmark.position.xyz.x() = at.x, landmark.position.xyz.y() = at.y;
       }

@@ -14,6 +14,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "core/rotate_axes.hpp"
 #include "geo/grid_rotation.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
@@ -139,7 +140,7 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
     const double rotation = grid_rotation(map.frame, {x, y});
     route.stations.push_back({map.frame.crs_from_map_frame({{x, y, 0}}).xyz.head<2>(), distance,
                               localization::wrap_angle(pose.yaw + rotation),
-                              planning::symmetric(rotate_covariance(node.covariance.matrix(), rotation)),
+                              planning::symmetric(rotate_axes(node.covariance.matrix(), rotation)),
                               position_sd(node.covariance), seen.landmarks,
                               important_landmarks(planner, uids, pose)});
   }

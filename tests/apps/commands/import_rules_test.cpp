@@ -51,6 +51,23 @@ class ImportRules : public testing::Test {
   std::string map_ = folder_ / "map.gpkg";
 };
 
+/// The walls of the houses lie along the graticule. In zone 31 the grid is turned by the meridian
+/// convergence.
+TEST_F(ImportRules, DirectionsCountFromTheNorthOfTheMap) {
+  const double degree = std::numbers::pi / 180;
+  const double convergence = std::atan(std::tan(5.4 * degree) * std::sin(49 * degree));
+  const std::vector<std::pair<std::string, double>> maps{{"EPSG:4326", 0}, {"EPSG:32631", convergence}};
+  for (const auto& [crs, turn] : maps) {
+    const Outcome said = import(kTown, "town.osm", {"--rules", "osm", "--map-crs", crs});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const json walls = landmarks("wall");
+    EXPECT_EQ(walls.size(), 6U);
+    for (const json& wall : walls)
+      EXPECT_NEAR(std::remainder(double(wall["direction"]) + turn, 90 * degree), 0, 0.03 * degree) << crs;
+    std::filesystem::remove(map_);
+  }
+}
+
 TEST_F(ImportRules, ATownOfOpenStreetMap) {
   const Outcome said = import(kTown, "town.osm", {"--rules", "osm"});
   ASSERT_EQ(said.code, 0) << said.err;

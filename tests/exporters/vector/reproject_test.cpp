@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/exporters/small_map.hpp"
 
 namespace waymark::test {
@@ -23,6 +25,27 @@ TEST(Reproject, MovesPositionsAndSaddlesAlike) {
   EXPECT_EQ(std::get<double>(one.attributes[attribute_index(type, "saddle_x")]), one.position.xyz.x());
   EXPECT_EQ(std::get<double>(one.attributes[attribute_index(type, "saddle_y")]), one.position.xyz.y());
   EXPECT_TRUE(std::holds_alternative<std::monostate>(one.attributes[attribute_index(type, "higher_x")]));
+}
+
+/// Polar stereographic, at 90 degrees east: x grows to the north, y to the west.
+TEST(Reproject, TurnsCovariancesAndDirectionsToTheOtherAxes) {
+  const Crs degrees = Crs::from_text("IAU_2015:30100"), polar = Crs::from_text("IAU_2015:30135");
+  LandmarkType type;
+  type.features = {{.name = "radius", .unit = "m", .scale = Scale::ratio, .summary = ""},
+                   {.name = "orientation", .unit = "rad", .scale = Scale::axis, .summary = ""}};
+  Landmark one;
+  one.position = {{90, -85, 12}};
+  one.covariance = Eigen::Vector3d(1, 4, 0.25).asDiagonal();
+  one.features = {{10, 0, 1}, {0.3, 0, 1}};
+  const Landmark there = reproject({one}, type, degrees, polar).landmarks.at(0);
+  EXPECT_NEAR(there.covariance(0, 0), 4, 1e-6);
+  EXPECT_NEAR(there.covariance(1, 1), 1, 1e-6);
+  EXPECT_EQ(there.covariance(2, 2), 0.25);
+  EXPECT_NEAR(there.features[1].value, 0.3 + std::numbers::pi / 2 - std::numbers::pi, 1e-6);
+  EXPECT_EQ(there.features[0].value, 10);
+  const Landmark back = reproject({there}, type, polar, degrees).landmarks.at(0);
+  EXPECT_LE((back.covariance - one.covariance).norm(), 1e-6);
+  EXPECT_NEAR(back.features[1].value, 0.3, 1e-6);
 }
 
 TEST(Reproject, ToTheSameCrsChangesNothing) {

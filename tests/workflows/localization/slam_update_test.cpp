@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <numbers>
 
 #include "core/locked_folder.hpp"
 #include "geodb/write_map.hpp"
@@ -18,11 +19,11 @@ namespace {
 class SlamUpdateOfARock : public ::testing::Test {
  protected:
   // A rock that three of four images detected, two of them with a radius: 0.93 and 1.07 m.
-  OpenedMap make_map() {
+  OpenedMap make_map(const Crs& crs = Crs::local(), const Eigen::Vector3d& at = {5, 2, 0}) {
     const LandmarkType& type = types_[types_.id("rock")];
     rock_.type = types_.id("rock");
     rock_.uid = "rock-1";
-    rock_.position = {{5, 2, 0}};
+    rock_.position = {at};
     rock_.covariance = Eigen::Matrix3d::Identity() * 0.01;
     rock_.features.resize(type.features.size());
     rock_.attributes.resize(type.attributes.size());
@@ -35,7 +36,8 @@ class SlamUpdateOfARock : public ::testing::Test {
     geodb::MapContents contents;
     contents.types = types_;
     contents.landmarks = {rock_};
-    geodb::write_map(folder_.path() / "map.gpkg", contents);
+    contents.crs = crs;
+    geodb::write_map(folder_.path() / "map.gpkg", contents, {.empty_tables = {"wall"}});
     return open_robot_map((folder_.path() / "map.gpkg").string(), nullptr);
   }
 
@@ -83,6 +85,37 @@ TEST_F(SlamUpdateOfARock, ErrorsCommonToAllImagesAreKept) {
   EXPECT_NEAR(both.quality.feature_confidences[radius_].value(),
               plain.quality.feature_confidences[radius_].value(), 1e-9);
   EXPECT_NEAR(both.features[radius_].variance, plain.features[radius_].variance / 3 + common, 1e-9);
+}
+
+/// South polar stereographic, at 90 degrees east: x grows to the north, y to the west.
+TEST_F(SlamUpdateOfARock, CovariancesAndDirectionsOfAPolarMapAreAlongItsAxes) {
+  const Crs polar = Crs::from_text("IAU_2015:30135");
+  const auto at = CrsTransform(geographic_crs(polar), polar)(90, -89);
+  const OpenedMap opened = make_map(polar, {at.x, at.y, 0});
+  localization::SlamLandmark rock = after_drive(10, 10, 1);
+  rock.key = localization::landmark_key("rock-1");
+  rock.was_mapped = true;
+  rock.at = {0, 0.5};  // east and north of the frame
+  rock.covariance = Eigen::Vector2d(0.001, 0.004).asDiagonal();
+  const Landmark changed = make_slam_update({&rock, 1}, opened.map, {}, "drive", 2).changed.at(0);
+  EXPECT_NEAR(changed.position.xyz.x(), at.x + 0.5, 0.01);
+  EXPECT_NEAR(changed.covariance(0, 0), 0.004, 1e-6);
+  EXPECT_NEAR(changed.covariance(1, 1), 0.001, 1e-6);
+
+  localization::SlamLandmark wall;
+  const TypeRegistry& of_map = opened.map.types();
+  wall.type = of_map.id("wall");
+  wall.log_odds = 4, wall.matches = 3, wall.expected = 3;
+  wall.at = {3, 3};
+  wall.covariance = Eigen::Vector2d(0.001, 0.004).asDiagonal();
+  const std::size_t direction = feature_index(of_map[*wall.type], "direction");
+  localization::KnownFeatures look;
+  look.value[direction] = 0.3;  // clockwise from true north, the map's x axis
+  wall.feature_samples = {look, look};
+  const SlamUpdate update = make_slam_update({&wall, 1}, opened.map, {}, "drive", 2);
+  EXPECT_NEAR(update.added.at(0).features[direction].value, 0.3 + std::numbers::pi / 2, 1e-4);
+  EXPECT_NEAR(update.evidence.at(0).features[direction].value, 0.3 + std::numbers::pi / 2, 1e-4);
+  EXPECT_NEAR(update.added.at(0).covariance(0, 0), 0.004, 1e-5);
 }
 
 TEST_F(SlamUpdateOfARock, ADriveCountsAsOneSurvey) {
