@@ -272,7 +272,6 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   const std::optional<localization::PoseEstimate> start =
       choose_start(request, settings, log, method.start());
   if (start) check_distance(*start, map, request.log);
-  const OpenedMap again = opened;  // for a second run
   LocalizeTask task{.map_file = request.map,
                     .log_file = request.log,
                     .log = log,
@@ -296,9 +295,12 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   LocalizeResult result{.track = method.run(task),
                         .settings = options_as_text(option_table(options)),
                         .settings_json = task.settings_json};
-  if (task.start && !method.updates_map() && fits_badly(result.track))
+  if (task.start && request.map != "none" && !method.updates_map() && fits_badly(result.track)) {
+    const OpenedMap again =
+        open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
     if (const std::string fault = find_mirrored(task, again, method); !fault.empty())
       callbacks.warning(fault + ": " + request.log);
+  }
   if (!request.output.empty()) write_track(request, result.track, map);
   if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);
   return result;
