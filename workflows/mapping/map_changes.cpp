@@ -103,20 +103,22 @@ class Coverage {
   std::unordered_map<std::string, double> gsd_;
 };
 
-/// Indices of the landmarks that one map alone has though the other one covers them.
-std::vector<std::size_t> only_in(const LoadedMap& map, const Coverage& own, const Coverage& other,
-                                 const std::vector<bool>& has_partner, std::int64_t& not_covered) {
+/// Landmark that one map alone has, and whether the other map covers it.
+struct Single {
+  std::size_t index = 0;
+  bool covered = false;
+};
+
+std::vector<Single> only_in(const LoadedMap& map, const Coverage& own, const Coverage& other,
+                            const std::vector<bool>& has_partner) {
   std::unordered_map<std::string, std::vector<const Observation*>> seen;
   for (const Observation& one : map.evidence)
     if (one.rejected.empty()) seen[one.landmark_uid].push_back(&one);
-  std::vector<std::size_t> alone;
+  std::vector<Single> alone;
   for (std::size_t i = 0; i < map.landmarks.size(); ++i) {
     if (has_partner[i]) continue;
     const Landmark& landmark = map.landmarks[i];
-    if (other.covers(landmark.position.xyz.head<2>(), own.coarsest(seen[landmark.uid])))
-      alone.push_back(i);
-    else
-      ++not_covered;
+    alone.push_back({i, other.covers(landmark.position.xyz.head<2>(), own.coarsest(seen[landmark.uid]))});
   }
   return alone;
 }
@@ -125,22 +127,25 @@ double distance_of(const Landmark& a, const Landmark& b, const pipeline::MapPlan
   return plane.offset(a.position.xyz.head<2>(), b.position.xyz.head<2>()).norm();
 }
 
-/// Pairs landmarks that are gone with those that appeared: per index in `gone`, that in `appeared`.
+/// Pairs landmarks of the earlier map alone with those of the later map alone: per index in `before`, that in
+/// `after`. One of both at least is covered by the other map.
 std::vector<std::optional<std::size_t>> find_moves(const LoadedMap& earlier,
-                                                   const std::vector<std::size_t>& gone,
-                                                   const LoadedMap& later,
-                                                   const std::vector<std::size_t>& appeared,
-                                                   double max_move) {
-  std::vector<std::optional<std::size_t>> moves(gone.size());
+                                                   const std::vector<Single>& before, const LoadedMap& later,
+                                                   const std::vector<Single>& after, double max_move) {
+  std::vector<std::optional<std::size_t>> moves(before.size());
   if (!(max_move > 0)) return moves;
   std::vector<Observation> seen;
-  for (const std::size_t i : gone) seen.push_back(pipeline::as_observation(earlier.landmarks[i], "earlier"));
-  for (const std::size_t j : appeared) seen.push_back(pipeline::as_observation(later.landmarks[j], "later"));
+  for (const Single& one : before)
+    seen.push_back(pipeline::as_observation(earlier.landmarks[one.index], "earlier"));
+  for (const Single& one : after)
+    seen.push_back(pipeline::as_observation(later.landmarks[one.index], "later"));
   pipeline::AssociationRules rules;
   rules.position_floor = rules.max_distance = max_move;
   const std::vector<std::uint32_t> first = pipeline::associate(seen, earlier.types, earlier.crs, rules);
-  for (std::size_t s = gone.size(); s < seen.size(); ++s)
-    if (first[s] < gone.size()) moves[first[s]] = appeared[s - gone.size()];
+  for (std::size_t s = before.size(); s < seen.size(); ++s) {
+    const std::size_t from = first[s], to = s - before.size();
+    if (from < before.size() && (before[from].covered || after[to].covered)) moves[from] = to;
+  }
   return moves;
 }
 
@@ -181,22 +186,31 @@ MapChanges find_changes(const LoadedMap& earlier, const LoadedMap& later,
     else
       found.changes.push_back({ChangeKind::moved, *partners[j], j, distance_of(was, is, plane)});
   }
-  const auto gone = only_in(earlier, of_earlier, of_later, kept, found.not_covered);
-  const auto appeared = only_in(later, of_later, of_earlier, known, found.not_covered);
-  const auto moves = find_moves(earlier, gone, later, appeared, max_move);
-  std::vector<bool> moved(later.landmarks.size());
-  for (std::size_t k = 0; k < gone.size(); ++k) {
-    if (!moves[k]) {
-      found.changes.push_back({ChangeKind::gone, gone[k], {}, 0});
-      continue;
+  const std::vector<Single> before = only_in(earlier, of_earlier, of_later, kept),
+                            after = only_in(later, of_later, of_earlier, known);
+  const auto moves = find_moves(earlier, before, later, after, max_move);
+  std::vector<bool> moved(after.size());
+  for (std::size_t k = 0; k < before.size(); ++k) {
+    const std::size_t was = before[k].index;
+    if (moves[k]) {
+      moved[*moves[k]] = true;
+      const std::size_t is = after[*moves[k]].index;
+      found.changes.push_back(
+          {ChangeKind::moved, was, is, distance_of(earlier.landmarks[was], later.landmarks[is], plane)});
+    } else if (before[k].covered) {
+      found.changes.push_back({ChangeKind::gone, was, {}, 0});
+    } else {
+      ++found.not_covered;
     }
-    moved[*moves[k]] = true;
-    found.changes.push_back({ChangeKind::moved, gone[k], moves[k],
-                             distance_of(earlier.landmarks[gone[k]], later.landmarks[*moves[k]], plane)});
   }
   std::ranges::sort(found.changes, {}, [](const MapChange& change) { return *change.earlier; });
-  for (const std::size_t j : appeared)
-    if (!moved[j]) found.changes.push_back({ChangeKind::appeared, {}, j, 0});
+  for (std::size_t k = 0; k < after.size(); ++k) {
+    if (moved[k]) continue;
+    if (after[k].covered)
+      found.changes.push_back({ChangeKind::appeared, {}, after[k].index, 0});
+    else
+      ++found.not_covered;
+  }
   return found;
 }
 

@@ -29,8 +29,8 @@ struct MapChanges {
 /// - A landmark of one map alone is a change only where the other map covers it. Images cover their
 ///   footprints, if they are at least nearly as sharp (1.1) as the coarsest image that shows the landmark;
 ///   a map without footprints covers the convex hull of its landmarks.
-/// - A landmark that is gone moved, if one of its type and of similar size appeared within `max_move` metres.
-///   The nearest are paired first (association_cost).
+/// - A landmark of the earlier map alone moved, if the later map alone has one of its type and of similar
+///   size within `max_move` metres; one of both is covered. The nearest are paired first (association_cost).
 /// - Partners that disagree in position (same_place) moved, whatever their distance.
 MapChanges find_changes(const LoadedMap& earlier, const LoadedMap& later,
                         const std::vector<std::optional<std::size_t>>& partners, double max_move);

@@ -310,6 +310,12 @@ TEST_F(MergeMaps, WithoutImagesTheHullOfTheLandmarksIsCovered) {
   EXPECT_EQ(counts_.appeared, 1);
   EXPECT_EQ(counts_.unchanged, 4);
   EXPECT_EQ(counts_.not_covered, 1);
+  // A rock that moved out of the other map's hull is not gone.
+  const std::string d = written("d.gpkg", plot({{0, 0}, {10, 0}, {10, 9}, {0, 10}, {5, 4}, {20, 5}}));
+  counts_ = merge_maps({.maps = {a, d}, .result = file("e.gpkg"), .changes = true, .max_move = 3});
+  EXPECT_EQ(counts_.moved, 1);
+  EXPECT_EQ(counts_.gone, 0);
+  EXPECT_EQ(counts_.unchanged, 5);
 }
 
 TEST_F(MergeMaps, APostThatMovedStandsWhereItWasSeenLast) {
