@@ -36,36 +36,38 @@ class Import final : public Command {
             "and geometries: points, centroids, corners, ends, walls.\n\n"
             "pg:CONNECTION reads a map that `waymark export` stored in PostgreSQL (schema=NAME, default "
             "waymark).",
-        .arguments = {file_word("TABLE", &request_.table, "Table to read; /vsi paths too. Or pg:CONNECTION"),
-                      Argument{"-o,--output", "MAP.gpkg", &request_.map,
-                               "Map to write; an older map of that name is replaced"}
-                          .needed()
-                          .offering(Offer::file),
-                      Argument{"--type", "T", &request_.options.type, "Landmark type of the rows"}
-                          .offering(workflows::all_types().names())
-                          .or_else("the table's column `type`, or the layer's name"),
-                      Argument{"--from", "FORMAT", &request_.format, "Kind of table"}
-                          .one_of({"csv", "ogr", "mrclam"})
-                          .or_else("csv for .csv, .tsv, .txt, .dat, .tab; else ogr"),
-                      Argument{"--map-crs", "CRS", &request_.options.map_crs, "CRS of the map"}.or_else(
-                          "the table's"),
-                      Argument{"--crs", "CRS", &request_.options.table_crs,
-                               "CRS of the table's positions, in place of what the table says"}
-                          .or_else("the table's own, or --map-crs"),
-                      Argument{"--columns", "TARGET=EXPRESSION,...", &request_.options.columns,
-                               "What the columns are"}
-                          .or_else("by their names"),
-                      Argument{"--mapping", "FILE.json", &request_.mapping,
-                               "Mapping file: types by the words of a column, columns, CRSs; options win"}
-                          .offering(Offer::file),
-                      Argument{"--rules", "FILE.json|NAME", &request_.rules,
-                               "Rules for GIS layers: tags to types; a file, or " + names_of_ready_rules()}
-                          .offering(Offer::file),
-                      Argument{"--print-rules", "", &print_rules_, "Print these rules and stop"}.alone(),
-                      Argument{"--layer", "NAME", &request_.layer, "Layer of a file that holds several"},
-                      {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
-                       "Reject rows that cannot be read, instead of stopping at the first"},
-                      format_option(&format_)},
+        .arguments =
+            {file_word("TABLE", &request_.table, "Table to read; /vsi paths too. Or pg:CONNECTION"),
+             Argument{"-o,--output", "MAP.gpkg", &request_.map,
+                      "Map to write; an older map of that name is replaced"}
+                 .needed()
+                 .offering(Offer::file),
+             Argument{"--type", "T", &request_.options.type, "Landmark type of the rows"}
+                 .offering(workflows::all_types().names())
+                 .or_else("the table's column `type`, or the layer's name"),
+             Argument{"--from", "FORMAT", &request_.format, "Kind of table"}
+                 .one_of({"csv", "ogr", "mrclam"})
+                 .or_else("csv for .csv, .tsv, .txt, .dat, .tab; else ogr"),
+             Argument{"--map-crs", "CRS", &request_.options.map_crs, "CRS of the map"}.or_else("the table's"),
+             Argument{"--crs", "CRS", &request_.options.table_crs,
+                      "CRS of the table's positions, in place of what the table says"}
+                 .or_else("the table's own, or --map-crs"),
+             Argument{"--columns", "TARGET=EXPRESSION,...", &request_.options.columns, "What the columns are"}
+                 .or_else("by their names"),
+             Argument{"--mapping", "FILE.json", &request_.mapping,
+                      "Mapping file: types by the words of a column, columns, CRSs; options win"}
+                 .offering(Offer::file),
+             Argument{"--rules", "FILE.json|NAME", &request_.rules,
+                      "Rules for GIS layers: tags to types; a file, or " + names_of_ready_rules()}
+                 .offering(Offer::file),
+             Argument{"--print-rules", "", &print_rules_, "Print these rules and stop"}.alone(),
+             Argument{"--layer", "NAME", &request_.layer, "Layer of a file that holds several"},
+             Argument{"--unit", "UNIT", &request_.unit,
+                      "Unit of local coordinates, with --rules: m, dm, cm, mm, km, in, ft, yd, mi, us_ft"}
+                 .or_else("that a DXF file states, else metres"),
+             {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
+              "Reject rows that cannot be read, instead of stopping at the first"},
+             format_option(&format_)},
         .examples =
             {{"waymark import LROCCraters.csv -o moon.gpkg --type crater --map-crs IAU_2015:30100 --columns "
               "'x=Long,y=Lat,radius=\"Diameter (km)\"*500'",
@@ -77,6 +79,8 @@ class Import final : public Command {
               "All types of a table with a column `type`"},
              {"waymark import town.osm -o town.gpkg --rules osm",
               "Lamps, signs, trees and buildings of OpenStreetMap"},
+             {"waymark import plan.dxf -o hall.gpkg --rules floor_plan --map-crs local --unit mm",
+              "Walls and doors of a drawing in millimetres"},
              {"waymark import 'pg:dbname=maps schema=alps' -o alps.gpkg", "A map from PostGIS"}},
         .result = result_keys()};
   }

@@ -25,8 +25,14 @@ class Merge final : public Command {
                           Offer::file),
                       Argument{"-o,--output", "MAP.gpkg", &request_.result, "Map to write"}.needed().offering(
                           Offer::file),
+                      {"--changes", "", &request_.changes,
+                       "Compare two maps, the earlier one first: layer change of the result"},
+                      {"--max-move", "METRES", &request_.max_move,
+                       "Largest distance of a landmark that moved; what is farther is gone and new"},
                       format_option(&format_)},
-        .examples = {{"waymark merge north.gpkg south.gpkg -o site.gpkg", "Two flights over one site"}},
+        .examples = {{"waymark merge north.gpkg south.gpkg -o site.gpkg", "Two flights over one site"},
+                     {"waymark merge spring.gpkg autumn.gpkg --changes -o site.gpkg",
+                      "What is gone, new or moved since spring"}},
         .result = result_keys()};
   }
 
@@ -37,17 +43,33 @@ class Merge final : public Command {
                                    {"maps", static_cast<std::int64_t>(request_.maps.size())},
                                    {"landmarks", done.landmarks},
                                    {"fused", done.fused},
-                                   {"identical", done.identical}});
+                                   {"identical", done.identical},
+                                   {"gone", changes(done.gone)},
+                                   {"new", changes(done.appeared)},
+                                   {"moved", changes(done.moved)},
+                                   {"unchanged", changes(done.unchanged)},
+                                   {"not_covered", changes(done.not_covered)}});
     return 0;
   }
 
  private:
+  /// Returns a number of changes, null if they were not requested.
+  ResultValue changes(std::int64_t number) const {
+    return request_.changes ? ResultValue(number) : ResultValue();
+  }
+
   static std::vector<ResultKey> result_keys() {
     return {{"map", ResultKind::text, "Map that was written"},
             {"maps", ResultKind::integer, "Maps that were read"},
             {"landmarks", ResultKind::integer, "Landmarks of the written map"},
             {"fused", ResultKind::integer, "Landmarks of several maps, by different observations"},
-            {"identical", ResultKind::integer, "Landmarks of several maps, by the same observations"}};
+            {"identical", ResultKind::integer, "Landmarks of several maps, by the same observations"},
+            {"gone", ResultKind::integer, "Landmarks of the first map alone; null without --changes"},
+            {"new", ResultKind::integer, "Landmarks of the second map alone; null without --changes"},
+            {"moved", ResultKind::integer, "Landmarks that moved; null without --changes"},
+            {"unchanged", ResultKind::integer, "Landmarks of both maps, not moved; null without --changes"},
+            {"not_covered", ResultKind::integer,
+             "Landmarks of one map where the other shows nothing; null without --changes"}};
   }
 
   std::string format_ = "text";

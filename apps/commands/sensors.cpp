@@ -1,5 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
+#include <set>
+
+#include "apps/log.hpp"
 #include "apps/registry_reference.hpp"
+#include "core/error.hpp"
 #include "workflows/registries.hpp"
 #include "workflows/sensor_file.hpp"
 
@@ -27,6 +33,7 @@ class Sensors final : public Command {
     if (what_.name.ends_with(".json")) {  // checks a file, and prints what was read
       SensorProfile own = *workflows::find_sensor(what_.name);
       own.name = what_.name;
+      warn_of_unknown_types(own);
       sensors.add(std::move(own));
     } else {
       for (const SensorProfile& sensor : workflows::all_sensors()) sensors.add(sensor);
@@ -36,6 +43,18 @@ class Sensors final : public Command {
   }
 
  private:
+  static void warn_of_unknown_types(const SensorProfile& sensor) {
+    std::set<std::string> seen;
+    for (const FeatureWeight& feature : sensor.weights) {
+      if (workflows::all_types().find(feature.type) || !seen.insert(feature.type).second) continue;
+      const std::string nearest = nearest_name(feature.type, workflows::all_types().names());
+      log_warning(
+          fmt::format("no landmark type of this program is named '{}'{}: its weights apply to maps with "
+                      "such a type only",
+                      feature.type, nearest.empty() ? "" : fmt::format("; '{}' is", nearest)));
+    }
+  }
+
   ReferenceRequest what_;
 };
 

@@ -16,7 +16,7 @@ void check_file_kind(std::string_view json, const std::string& kind, const std::
   if (!file.is_object() || !file.contains(key))
     throw Error(
         ErrorCode::usage, fmt::format("this is no {} file", kind), source,
-        fmt::format(R"(it begins {{"{}": 1, ...}}; `waymark {}s NAME --as json` prints one)", key, kind));
+        fmt::format(R"(it begins {{"{}": 1, ...}}; `waymark {}s NAME --format json` prints one)", key, kind));
   if (file[key] != 1)
     throw Error(ErrorCode::usage, fmt::format("the version of the {} file is unknown", kind), source,
                 fmt::format(R"(this program reads "{}": 1)", key));

@@ -83,7 +83,11 @@ LandmarkSection landmark_section(const LandmarkType& type, const LandmarkVisit& 
   visit([&](Landmark&& landmark) {
     ++section.count;
     const double x = landmark.position.xyz.x(), y = landmark.position.xyz.y();
-    section.extent = section.extent ? section.extent->united({x, y, x, y}) : Extent{x, y, x, y};
+    const auto extend = [y](std::optional<Extent>& extent, double at) {
+      extent = extent ? extent->united({at, y, at, y}) : Extent{at, y, at, y};
+    };
+    extend(section.extent, x);
+    extend(section.eastern_extent, x - 360 * std::floor(x / 360));
     for (std::size_t i = 0; i < section.values.size(); ++i)
       if (const double value = value_of(landmark, i); std::isfinite(value))
         section.values[i].push_back(value);

@@ -46,6 +46,7 @@ struct LandmarkSection {
   std::vector<Landmark> landmarks = {};
   std::vector<std::vector<double>> values = {};  ///< the known values of each feature, unsorted
   std::optional<Extent> extent = {};             ///< of all positions
+  std::optional<Extent> eastern_extent = {};     ///< the same with longitudes from 0 to 360
   ObservationMeans observed = {};
 };
 

@@ -79,10 +79,17 @@ MapView view_of(const Crs& crs, const Extent& extent) {
 }
 
 std::optional<Extent> extent_of(const std::vector<LandmarkSection>& sections, const Crs& crs) {
-  std::optional<Extent> extent;
-  for (const LandmarkSection& section : sections)
-    if (section.extent) extent = extent ? extent->united(*section.extent) : section.extent;
+  std::optional<Extent> extent, eastern;
+  const auto unite = [](std::optional<Extent>& all, const std::optional<Extent>& one) {
+    if (one) all = all ? all->united(*one) : one;
+  };
+  for (const LandmarkSection& section : sections) {
+    unite(extent, section.extent);
+    unite(eastern, section.eastern_extent);
+  }
   if (!extent) return {};
+  // Across the antimeridian longitudes from 0 to 360 are the shorter way.
+  if (crs.kind() == CrsKind::geographic && eastern && eastern->width() < extent->width()) extent = eastern;
   const double kilometre = crs.kind() == CrsKind::geographic
                                ? 1000 / (crs.body().mean_radius() * kRadiansPerDegree)
                            : crs.kind() == CrsKind::local ? 1

@@ -67,14 +67,14 @@ class CityJsonElements final : public ElementSource {
     if (at_ >= objects_.size()) return false;
     const std::string& id = objects_[at_];
     const JsonValue object = root_["CityObjects"][id];
-    element = {
-        .layer = object["type"].text(), .number = std::int64_t(++at_), .tags = {{"id", id}}, .parts = {}};
-    element.tags["type"] = element.layer;
+    element = {.layer = object["type"].text(), .number = std::int64_t(++at_), .tags = {}, .parts = {}};
     if (object.has("attributes"))
       for (const std::string& name : object["attributes"].keys())
         if (object["attributes"].has(name))
           if (std::string value = text_of(object["attributes"][name]); !value.empty())
             element.tags[name] = std::move(value);
+    element.tags["id"] = id;  // win over attributes of these names
+    element.tags["type"] = element.layer;
     if (object.has("geometry")) add_geometry(object["geometry"], element.parts);
     return true;
   }
@@ -134,7 +134,7 @@ class CityJsonElements final : public ElementSource {
     if (!coarsest) return;
     const JsonValue geometry = geometries[*coarsest], boundaries = geometry["boundaries"];
     const std::string type = geometry["type"].text();
-    if (type == "MultiPoint") {
+    if (type == "MultiPoint" || type == "GeometryInstance") {  // of which the point of reference
       for (const Eigen::Vector3d& v : vertices_of(boundaries)) parts.push_back({Kind::point, {v}});
     } else if (type == "MultiLineString") {
       for (std::size_t i = 0; i < boundaries.size(); ++i)

@@ -67,12 +67,13 @@ std::vector<TagCondition> read_where(const JsonValue& where) {
 }
 
 ImportRule read_rule(const JsonValue& rule, const ImportRule& common) {
-  rule.expect_only({"type", "layer", "where", "geometry", "open", "min_turn_deg", "min_length", "max_length",
-                    "features", "attributes", "uid", "position_sd", "confidence"});
+  rule.expect_only({"type", "layer", "where", "except", "geometry", "open", "min_turn_deg", "min_length",
+                    "max_length", "features", "attributes", "uid", "position_sd", "confidence"});
   ImportRule read = common;
   read.type = rule["type"].text();
   if (rule.has("layer")) read.layers = one_or_more(rule["layer"]);
   if (rule.has("where")) read.where = read_where(rule["where"]);
+  if (rule.has("except")) read.except = read_where(rule["except"]);
   if (rule.has("geometry"))
     read.shape.shape = choose<ShapeOf>(rule["geometry"], {{"point", ShapeOf::point},
                                                           {"centroid", ShapeOf::centroid},
@@ -106,13 +107,14 @@ std::string known_names() {
 
 bool ImportRule::matches(const MapElement& element) const {
   if (!layers.empty() && std::ranges::find(layers, element.layer) == layers.end()) return false;
-  return std::ranges::all_of(where, [&](const TagCondition& condition) {
+  const auto holds = [&](const TagCondition& condition) {
     const auto tag = element.tags.find(condition.tag);
     if (condition.any_of.empty()) return tag == element.tags.end();
     return tag != element.tags.end() && std::ranges::any_of(condition.any_of, [&](const std::string& value) {
              return value == "*" || value == tag->second;
            });
-  });
+  };
+  return std::ranges::all_of(where, holds) && std::ranges::none_of(except, holds);
 }
 
 std::string ImportRule::title() const {
@@ -140,13 +142,15 @@ ImportRules read_import_rules(const std::string& file_or_name) {
                              : JsonValue::from_text(ready->second.json, file_or_name);
   if (!root.is_object() || !root.has("waymark_rules"))
     root.refuse("this is no rules file", R"(it begins with {"waymark_rules": 1})");
-  root.expect_only({"waymark_rules", "crs", "map_crs", "layer", "position_sd", "confidence", "rules"});
+  root.expect_only(
+      {"waymark_rules", "crs", "map_crs", "layer", "unit", "position_sd", "confidence", "rules"});
   if (root["waymark_rules"].integer() != 1)
     root["waymark_rules"].refuse("this version of rules files is not known", "write 1");
   ImportRules read;
   if (root.has("crs")) read.crs = root["crs"].text();
   if (root.has("map_crs")) read.map_crs = root["map_crs"].text();
   if (root.has("layer")) read.layer = root["layer"].text();
+  if (root.has("unit")) read.unit = root["unit"].text();
   ImportRule common;
   if (root.has("position_sd")) common.position_sd = expression(root["position_sd"]);
   if (root.has("confidence")) common.confidence = expression(root["confidence"]);

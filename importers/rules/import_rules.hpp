@@ -17,8 +17,9 @@ struct TagCondition {
 /// One rule: elements that become landmarks of one type.
 struct ImportRule {
   std::string type;
-  std::vector<std::string> layers;  ///< empty: all
-  std::vector<TagCondition> where;  ///< all must hold
+  std::vector<std::string> layers;   ///< empty: all
+  std::vector<TagCondition> where;   ///< all must hold
+  std::vector<TagCondition> except;  ///< none may hold
   ShapeOptions shape;
   std::map<std::string, std::string> features;    ///< feature, z or <feature>_sd -> expression of tags
   std::map<std::string, std::string> attributes;  ///< attribute -> tag, or 'text'
@@ -32,7 +33,7 @@ struct ImportRule {
 };
 
 struct ImportRules {
-  std::string crs, map_crs, layer;  ///< as the options of `waymark import`; empty: not stated
+  std::string crs, map_crs, layer, unit;  ///< as the options of `waymark import`; empty: not stated
   std::vector<ImportRule> rules;
 };
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
+#include "importers/rules/drawing_unit.hpp"
 namespace waymark::importers {
 
 /// Piece of a geometry in the coordinates of its file.
@@ -30,6 +31,8 @@ class ElementSource {
  public:
   virtual ~ElementSource() = default;
   virtual std::optional<Crs> crs() const = 0;
+  /// Returns the unit that a drawing states for its coordinates.
+  virtual std::optional<DrawingUnit> unit() const { return {}; }
   /// Reads the next element; returns false at the end. Throws Error{input} if the file breaks off.
   virtual bool next(MapElement& element) = 0;
   /// Begins again at the first element.

@@ -66,9 +66,11 @@ class OgrElements final : public ElementSource {
     if (!layer.empty()) layer_named(*dataset_, path_, layer, names);
     for (OGRLayer* one : dataset_->GetLayers())
       if (!crs_ && (layer.empty() || layer == one->GetName())) crs_ = crs_of(*one);
+    if (dataset_->GetDriver() && EQUAL(dataset_->GetDriverName(), "DXF")) unit_ = read_dxf_unit(path_);
   }
 
   std::optional<Crs> crs() const override { return crs_; }
+  std::optional<DrawingUnit> unit() const override { return unit_; }
 
   bool next(MapElement& element) override {
     const GdalListener gdal;
@@ -136,6 +138,7 @@ class OgrElements final : public ElementSource {
   std::unique_ptr<PlainOsmIndex> plain_;  // for as long as the file is read
   GdalDataset dataset_;
   std::optional<Crs> crs_;
+  std::optional<DrawingUnit> unit_;
   std::int64_t last_ = 0;
 };
 

@@ -31,6 +31,7 @@ struct Chain {
   std::vector<std::size_t> number;  // of the vertices in the part
   std::vector<SharedVertex> shared;
   bool closed = false;
+  bool line = false;  // seen from both sides, closed or not
 
   std::size_t pieces() const { return vertices.size() - (closed ? 0 : 1); }
   Eigen::Vector2d at(std::size_t i) const { return vertices[i % vertices.size()].head<2>(); }
@@ -44,28 +45,38 @@ double signed_area(const std::vector<Eigen::Vector3d>& ring) {
   return twice / 2;
 }
 
+bool same_point(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return (a - b).head<2>().norm() < kSamePoint;
+}
+
+/// Returns whether a line ends where it begins, around an area.
+bool is_closed_line(const GeometryPart& part) {
+  return part.kind == Kind::line && part.vertices.size() > 3 &&
+         same_point(part.vertices.front(), part.vertices.back());
+}
+
 Chain chain_of(const GeometryPart& part, const std::vector<SharedVertex>* shared, int& repeated) {
-  Chain chain{.vertices = {}, .number = {}, .shared = {}, .closed = part.kind != Kind::line};
-  const auto same = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return (a - b).head<2>().norm() < kSamePoint;
-  };
-  for (std::size_t i = 0; i < part.vertices.size(); ++i) {
-    if (!chain.vertices.empty() && same(chain.vertices.back(), part.vertices[i])) {
+  const bool line = part.kind == Kind::line, ring = is_closed_line(part);
+  Chain chain{.vertices = {}, .number = {}, .shared = {}, .closed = !line || ring, .line = line};
+  for (std::size_t i = 0; i < part.vertices.size() - (ring ? 1 : 0); ++i) {
+    if (!chain.vertices.empty() && same_point(chain.vertices.back(), part.vertices[i])) {
       ++repeated;
+      if (shared && (*shared)[i].joined) chain.shared.back() = (*shared)[i];
       continue;
     }
     chain.vertices.push_back(part.vertices[i]);
     chain.number.push_back(i + 1);
     chain.shared.push_back(shared ? (*shared)[i] : SharedVertex{});
   }
-  while (chain.closed && chain.vertices.size() > 1 && same(chain.vertices.front(), chain.vertices.back())) {
+  while (chain.closed && chain.vertices.size() > 1 &&
+         same_point(chain.vertices.front(), chain.vertices.back())) {
     ++repeated;
     chain.vertices.pop_back();
     chain.number.pop_back();
     chain.shared.pop_back();
   }
   const bool runs_left = signed_area(chain.vertices) > 0;
-  if (chain.closed && runs_left != (part.kind == Kind::outline)) {
+  if (!line && runs_left != (part.kind == Kind::outline)) {
     std::ranges::reverse(chain.vertices);
     std::ranges::reverse(chain.number);
     std::ranges::reverse(chain.shared);
@@ -78,7 +89,7 @@ Chain chain_of(const GeometryPart& part, const std::vector<SharedVertex>* shared
 
 /// Sides of a chain that are seen: +1 right of its run (the outside of an outline), -1 left.
 std::vector<int> seen_sides(const Chain& chain, OpenSide open) {
-  if (!chain.closed || open == OpenSide::both) return {1, -1};
+  if (chain.line || open == OpenSide::both) return {1, -1};
   return {open == OpenSide::outside ? 1 : -1};
 }
 
@@ -91,8 +102,13 @@ std::string label(const Chain& chain, std::size_t vertex, int side, bool several
 void add_corners(const Chain& chain, const ShapeOptions& options, DerivedShapes& into) {
   const std::size_t n = chain.vertices.size();
   const auto sides = seen_sides(chain, options.open);
-  for (std::size_t i = chain.closed ? 0 : 1; i < (chain.closed ? n : n - 1); ++i) {
-    const Eigen::Vector2d before = chain.piece((i + n - 1) % n), after = chain.piece(i);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto& next = chain.shared[i].next;
+    const bool first = !chain.closed && i == 0, last = !chain.closed && i + 1 == n;
+    if ((first || last) && !next) continue;
+    const Eigen::Vector2d before =
+        first ? Eigen::Vector2d(chain.at(i) - *next) : chain.piece((i + n - 1) % n);
+    const Eigen::Vector2d after = last ? Eigen::Vector2d(*next - chain.at(i)) : chain.piece(i);
     if (before.norm() < options.min_length || after.norm() < options.min_length) {
       ++into.omitted["wall of a corner shorter than min_length"];
       continue;
@@ -124,6 +140,10 @@ void add_ends(const Chain& chain, const ShapeOptions& options, DerivedShapes& in
   for (const bool last : {false, true}) {
     const std::size_t i = last ? n - 1 : 0;
     const Eigen::Vector2d wall = last ? Eigen::Vector2d(-chain.piece(n - 2)) : chain.piece(0);
+    if (chain.shared[i].joined) {
+      ++into.omitted["end that touches another line"];
+      continue;
+    }
     if (wall.norm() < options.min_length) {
       ++into.omitted["wall of an end shorter than min_length"];
       continue;
@@ -239,11 +259,12 @@ void add_centroid(const std::vector<GeometryPart>& parts, DerivedShapes& into) {
   const auto has = [&](Kind kind) {
     return std::ranges::any_of(parts, [=](auto& p) { return p.kind == kind; });
   };
-  const bool rings = has(Kind::outline), lines = has(Kind::line);
+  const bool rings = has(Kind::outline) || std::ranges::any_of(parts, is_closed_line);
+  const bool lines = has(Kind::line);
   Moments moments;
   for (const GeometryPart& part : parts) {
-    if (rings && part.kind != Kind::point && part.kind != Kind::line)
-      moments.add_ring(part.vertices, part.kind == Kind::outline ? 1 : -1);
+    if (rings && part.kind != Kind::point && (part.kind != Kind::line || is_closed_line(part)))
+      moments.add_ring(part.vertices, part.kind == Kind::hole ? -1 : 1);
     else if (!rings && lines && part.kind == Kind::line)
       moments.add_line(part.vertices);
     else if (!rings && !lines)
@@ -274,7 +295,9 @@ DerivedShapes derive_shapes(const std::vector<GeometryPart>& parts, const ShapeO
     ++derived.omitted["no geometry"];
     return derived;
   }
-  const auto is_outline = [](const GeometryPart& part) { return part.kind == Kind::outline; };
+  const auto is_outline = [](const GeometryPart& part) {
+    return part.kind == Kind::outline || is_closed_line(part);
+  };
   if (options.shape == ShapeOf::outline && std::ranges::none_of(parts, is_outline)) {
     const bool line = std::ranges::any_of(parts, [](auto& part) { return part.kind == Kind::line; });
     ++derived.omitted[line ? "outline that is not closed" : "no outline"];

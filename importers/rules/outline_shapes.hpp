@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 #include "importers/rules/map_element.hpp"
@@ -13,8 +14,8 @@ enum class ShapeOf {
   point,     ///< each point
   centroid,  ///< one for the element: of its area, else of its lines, else of its points
   outline,   ///< the centroid of an area; other geometries are refused
-  corners,   ///< vertices at which an outline or a line turns
-  ends,      ///< both ends of each line, once for each side
+  corners,   ///< vertices at which an outline or a line turns, and joints of two lines that turn
+  ends,      ///< free ends of each line, once for each side
   walls,     ///< straight pieces of outlines and lines
 };
 
@@ -54,10 +55,14 @@ struct DerivedShapes {
 /// reason is in `omitted`.
 /// - Consecutive vertices within 1 mm are one.
 /// - A direction is the bisector into the open at a corner, else the normal of the seen face.
-/// - `shared` holds for each vertex of each part what other outlines have, too: the vertex (a corner there is
-///   hidden or of another angle), and the wall from it to the next. It may be empty.
+/// - A line that ends where it begins has no ends. Its centroid is that of the area within.
+/// - `shared` holds for each vertex of each part what other outlines and lines have, too. It may be empty.
 struct SharedVertex {
-  bool corner = false, wall = false;
+  bool corner = false;  ///< vertex of another outline: a corner there is hidden or of another angle
+  bool wall = false;    ///< the wall to the next vertex is one of another outline, too
+  bool joined = false;  ///< end of a line that is a vertex of another line
+  std::optional<Eigen::Vector2d> next =
+      {};  ///< vertex at which the only other line goes on; one of both has it
 };
 DerivedShapes derive_shapes(const std::vector<GeometryPart>& parts, const ShapeOptions& options,
                             const std::vector<std::vector<SharedVertex>>& shared = {});

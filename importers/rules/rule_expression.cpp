@@ -70,6 +70,12 @@ class NoTable final : public TableSource {
 
 std::optional<double> parse_tag_number(const std::string& text) {
   if (const auto number = to_real(text, true)) return number;
+  if (const std::size_t feet = text.find('\''); feet != std::string::npos && text.ends_with('"')) {  // 6'3"
+    const auto whole = to_real(text.substr(0, feet), true);
+    const auto inches = to_real(text.substr(feet + 1, text.size() - feet - 2), true);
+    if (!whole || !inches || *inches < 0) return {};
+    return *whole * 0.3048 + *inches * 0.0254;
+  }
   const std::size_t end = text.find_last_of("0123456789.,");
   if (end == std::string::npos) return {};
   const std::size_t word = text.find_first_not_of(" \t", end + 1);

@@ -56,7 +56,9 @@ class RuleImport {
         take_(take),
         header_(described(source, path)),
         positions_(header_, table_crs, map_crs, false),
-        frame_(table_crs.empty() ? source.crs().value_or(positions_.map_crs()) : Crs::from_text(table_crs)) {
+        crs_(table_crs.empty() ? source.crs().value_or(positions_.map_crs()) : Crs::from_text(table_crs)),
+        frame_(crs_) {
+    choose_unit(rules.unit);
     std::size_t number = 0;
     for (const ImportRule& rule : rules.rules) rules_.push_back(bind_rule(rule, types, ++number));
     result_.crs = positions_.map_crs();
@@ -69,11 +71,12 @@ class RuleImport {
   ImportedTable run() {
     collect_shared();
     MapElement element;
-    while (source_.next(element)) add(element);
+    while (next(element)) add(element);
     for (const BoundRule& rule : rules_)
       result_.bindings.push_back(
           fmt::format("{}: {} elements, {} landmarks", rule.rule->title(), rule.elements, rule.landmarks));
-    result_.warnings = positions_.warnings();
+    const std::vector<std::string> warnings = positions_.warnings();
+    result_.warnings.insert(result_.warnings.end(), warnings.begin(), warnings.end());
     refuse_empty();
     return std::move(result_);
   }
@@ -87,19 +90,68 @@ class RuleImport {
     return header;
   }
 
+  /// Chooses the unit of coordinates. Those of a CRS have its unit; local ones that given, else the file's.
+  void choose_unit(const std::string& given) {
+    const bool local = crs_.kind() == CrsKind::local;
+    if (!given.empty() && !local)
+      throw Error(ErrorCode::usage, fmt::format("coordinates in {} have its unit", crs_.id()), "--unit",
+                  "leave it out, or pass --map-crs local");
+    if (!local) return;
+    const auto stated = source_.unit();
+    if (!given.empty()) {
+      metres_ = drawing_unit(given).metres;
+    } else if (stated && stated->metres != 1) {
+      metres_ = stated->metres;
+      result_.warnings.push_back(fmt::format(
+          "the header of the drawing states {} ($INSUNITS): coordinates are multiplied by {}; --unit m takes "
+          "them as metres",
+          stated->name, metres_));
+    }
+  }
+
+  /// Reads the next element, in metres if its coordinates are local.
+  bool next(MapElement& element) {
+    if (!source_.next(element)) return false;
+    if (metres_ != 1)
+      for (GeometryPart& part : element.parts)
+        for (Eigen::Vector3d& vertex : part.vertices) vertex *= metres_;
+    return true;
+  }
+
+  static bool compares_outlines(const ShapeOptions& shape) {
+    return shape.open == OpenSide::outside &&
+           (shape.shape == ShapeOf::corners || shape.shape == ShapeOf::walls);
+  }
+  static bool joins_lines(const ShapeOptions& shape) {
+    return shape.shape == ShapeOf::corners || shape.shape == ShapeOf::ends;
+  }
+
   void collect_shared() {
-    const auto needs = [](const BoundRule& bound) {
-      const ShapeOptions& shape = bound.rule->shape;
-      return shape.open == OpenSide::outside &&
-             (shape.shape == ShapeOf::corners || shape.shape == ShapeOf::walls);
+    const auto any = [&](bool (*needs)(const ShapeOptions&), const MapElement* element) {
+      return std::ranges::any_of(rules_, [&](const BoundRule& bound) {
+        return needs(bound.rule->shape) && (!element || bound.rule->matches(*element));
+      });
     };
-    if (!std::ranges::any_of(rules_, needs)) return;
+    if (!any(compares_outlines, nullptr) && !any(joins_lines, nullptr)) return;
     MapElement element;
-    while (source_.next(element))
-      if (std::ranges::any_of(rules_,
-                              [&](const BoundRule& b) { return needs(b) && b.rule->matches(element); }))
-        shared_.add(element);
+    while (next(element)) {
+      if (any(compares_outlines, &element)) shared_.add(element);
+      if (any(joins_lines, &element)) joints_.add(element);
+    }
     source_.restart();
+  }
+
+  /// Returns what other elements share with this one, in metres of its frame.
+  std::vector<std::vector<SharedVertex>> shared_with(const MapElement& element,
+                                                     const ShapeOptions& shape) const {
+    std::vector<std::vector<SharedVertex>> shared;
+    if (compares_outlines(shape)) shared = shared_.of(element);
+    if (!joins_lines(shape)) return shared;
+    joints_.mark(element, shared);
+    for (auto& part : shared)
+      for (SharedVertex& vertex : part)
+        if (vertex.next) vertex.next = frame_.metres({vertex.next->x(), vertex.next->y(), 0}).head<2>();
+    return shared;
   }
 
   void add(const MapElement& element) {
@@ -125,9 +177,8 @@ class RuleImport {
     if (!parts.empty()) frame_.move_to(parts[0].vertices[0]);
     for (GeometryPart& part : parts)
       for (Eigen::Vector3d& vertex : part.vertices) vertex = frame_.metres(vertex);
-    const bool outside = rule.rule->shape.open == OpenSide::outside;
-    const DerivedShapes derived = derive_shapes(
-        parts, rule.rule->shape, outside ? shared_.of(element) : std::vector<std::vector<SharedVertex>>{});
+    const DerivedShapes derived =
+        derive_shapes(parts, rule.rule->shape, shared_with(element, rule.rule->shape));
     for (const auto& [reason, count] : derived.omitted) reject(element, reason, count);
     for (const Shape& shape : derived.shapes) add(element, rule, shape);
   }
@@ -203,9 +254,12 @@ class RuleImport {
   const std::function<void(Landmark&&)>& take_;
   TableHeader header_;
   TablePositions positions_;
+  Crs crs_;  // of the file's positions
   NearbyFrame frame_;
+  double metres_ = 1;  // of a unit of local coordinates
   std::vector<BoundRule> rules_;
   SharedOutlines shared_;
+  LineJoints joints_;
   std::int64_t elements_ = 0;
   std::map<std::string, std::int64_t> tag_counts_;
   ImportedTable result_;

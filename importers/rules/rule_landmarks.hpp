@@ -14,9 +14,11 @@ namespace waymark::importers {
 ///   import_table(), and if the geometry does not fit the rule (no outline, a wall of zero length, a corner
 ///   shared with a neighbouring building).
 /// - Elements without a matching rule are no rows; `bindings` has the count of each rule.
-/// Lengths and directions are measured in a plane tangent to the body at each element; directions are from
-/// true north. Reads the file twice if rules use the outside of outlines: vertices of outlines (16 bytes
-/// each) are then kept in memory. `table_crs` and `map_crs` are those of TableImport. Throws Error{usage} for
+/// - Lengths and directions are measured in a plane tangent to the body at each element; directions are from
+///   true north. Local coordinates have the unit of the rules, else that of the file, else metres.
+/// - Rules that use the outside of outlines, corners or ends read the file twice. 40 to 70 bytes per vertex
+///   are then kept in memory.
+/// `table_crs` and `map_crs` are those of TableImport. Throws Error{usage} for
 /// rules with an unknown type, feature or attribute, Error{input} if no element matches or no landmark
 /// results.
 ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,

@@ -146,7 +146,11 @@ py::dict simulate(const py::dict& keywords, py::object progress, py::object mess
 
 const Keywords<workflows::MergeRequest>& merge_keywords() {
   using R = workflows::MergeRequest;
-  static const auto all = Keywords<R>().add("maps", &R::maps).add("output", &R::result);
+  static const auto all = Keywords<R>()
+                              .add("maps", &R::maps)
+                              .add("output", &R::result)
+                              .add("changes", &R::changes)
+                              .add("max_move", &R::max_move);
   return all;
 }
 
@@ -157,8 +161,16 @@ py::dict merge(const py::dict& keywords, py::object progress, py::object message
     const py::gil_scoped_release no_gil;
     return workflows::merge_maps(request, callbacks);
   }();
-  return py::dict(py::arg("landmarks") = made.landmarks, py::arg("fused") = made.fused,
+  py::dict counts(py::arg("landmarks") = made.landmarks, py::arg("fused") = made.fused,
                   py::arg("identical") = made.identical);
+  if (!request.changes) return counts;
+  for (const auto& [name, count] : {std::pair{"gone", made.gone},
+                                    {"new", made.appeared},
+                                    {"moved", made.moved},
+                                    {"unchanged", made.unchanged},
+                                    {"not_covered", made.not_covered}})
+    counts[name] = count;
+  return counts;
 }
 
 }  // namespace

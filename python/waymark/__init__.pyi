@@ -1047,10 +1047,15 @@ def map_images(images: Any, output: Any, *, find: Any = ..., progress: Any = ...
         height_sd: metres, of a height of the ground; 0: not known"""
     ...
 
-def merge(maps: Any, output: Any, *, progress: Any = ...) -> dict[str, int]:
+def merge(maps: Any, output: Any, *, progress: Any = ..., changes: bool = ..., max_move: float = ...) -> dict[str, int]:
     """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical.
 
-    Keywords:"""
+    options: changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map to
+    the second.
+
+    Keywords:
+        changes: find what changed from the first to the second map, two only
+        max_move: m; what moved farther is gone and new"""
     ...
 
 def open(path: Any) -> Map:

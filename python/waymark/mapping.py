@@ -61,7 +61,11 @@ def _raise(result, exit_code):
 
 @takes("merge")
 def merge(maps, output, *, progress=None, **options):
-    """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical."""
+    """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical.
+
+    options: changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map to
+    the second.
+    """
     return call(_waymark.merge, keywords(maps=[os.fspath(map) for map in maps], output=output, **options),
                 progress=progress)
 

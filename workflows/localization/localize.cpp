@@ -19,6 +19,7 @@
 #include "localization/robot_log.hpp"
 #include "workflows/localization/drive_layers.hpp"
 #include "workflows/localization/localize_method.hpp"
+#include "workflows/localization/mirrored_log.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/registries.hpp"
 #include "workflows/sensor_file.hpp"
@@ -199,6 +200,26 @@ localization::TrackWatcher both(localization::TrackWatcher first, localization::
   };
 }
 
+/// Runs a method on the beginning of the log, as it is and mirrored. Returns a warning if it fits the map
+/// much better mirrored.
+std::string find_mirrored(const LocalizeTask& task, const OpenedMap& map, LocalizeMethod& method) {
+  const localization::RobotLog start = beginning_of(task.log);
+  const auto run = [&](localization::RobotLog log) {
+    LocalizeTask other{.map_file = task.map_file,
+                       .log_file = task.log_file,
+                       .log = log,
+                       .map = map,
+                       .start = task.start,
+                       .settings = task.settings,
+                       .sensor = task.sensor,
+                       .ground = task.ground,
+                       .stem_type = task.stem_type};
+    return method.run(other);
+  };
+  return mirror_warning(run(start), run(mirror_log(start, MirroredPart::sensors)),
+                        run(mirror_log(start, MirroredPart::robot)));
+}
+
 const MethodTable& method_table() {
   static const MethodTable table = [] {
     MethodTable made;
@@ -274,6 +295,12 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   LocalizeResult result{.track = method.run(task),
                         .settings = options_as_text(option_table(options)),
                         .settings_json = task.settings_json};
+  if (task.start && request.map != "none" && !method.updates_map() && fits_badly(result.track)) {
+    const OpenedMap again =
+        open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
+    if (const std::string fault = find_mirrored(task, again, method); !fault.empty())
+      callbacks.warning(fault + ": " + request.log);
+  }
   if (!request.output.empty()) write_track(request, result.track, map);
   if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);
   return result;

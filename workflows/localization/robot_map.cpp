@@ -22,6 +22,21 @@ namespace {
 constexpr std::int64_t kMaxReadAtOnce = 200000;
 constexpr double kMargin = 25;  // m: a window of some hundred landmarks is read in well under 1 ms
 
+/// Returns the middle of geographic positions: the direction of the sum of their unit vectors, so that
+/// neither the antimeridian nor a pole matters. The first position if they cancel out.
+Eigen::Vector2d middle_direction(const std::vector<Landmark>& landmarks) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Landmark& l : landmarks) {
+    const Eigen::Vector2d angle = l.position.xyz.head<2>() * kRadiansPerDegree;
+    sum += Eigen::Vector3d(std::cos(angle.y()) * std::cos(angle.x()),
+                           std::cos(angle.y()) * std::sin(angle.x()), std::sin(angle.y()));
+  }
+  if (!(sum.norm() > 1e-3 * static_cast<double>(landmarks.size())))
+    return landmarks[0].position.xyz.head<2>();
+  return Eigen::Vector2d(std::atan2(sum.y(), sum.x()), std::atan2(sum.z(), sum.head<2>().norm())) /
+         kRadiansPerDegree;
+}
+
 Point<MapCrs> frame_origin(const geodb::MapStore& store) {
   if (store.crs().kind() == CrsKind::local) return {};
   const std::vector<Landmark> some = store.query({.limit = 1000});
@@ -31,7 +46,8 @@ Point<MapCrs> frame_origin(const geodb::MapStore& store) {
     origin.xyz += l.position.xyz / static_cast<double>(some.size());
     if (std::isfinite(l.position.xyz.z())) heights += l.position.xyz.z(), ++known;
   }
-  if (!some.empty() && store.crs().kind() == CrsKind::geographic) origin = some[0].position;
+  if (!some.empty() && store.crs().kind() == CrsKind::geographic)
+    origin.xyz.head<2>() = middle_direction(some);
   // Whole metres: poses without a height count as on this plane.
   origin.xyz.z() = known > 0 ? std::round(heights / known) : 0;
   return origin;

@@ -47,6 +47,9 @@ importers::ImportedTable read_table(const ImportRequest& request, StagedLandmark
   const importers::TableFormat format = request.format == "csv"   ? importers::TableFormat::csv
                                         : request.format == "ogr" ? importers::TableFormat::ogr
                                                                   : importers::TableFormat::by_name;
+  if (!request.unit.empty())
+    throw Error(ErrorCode::usage, "--unit is for rules, not for tables", "--unit",
+                "--columns converts: x=geom_x/1000,y=geom_y/1000");
   const auto source = importers::open_table(request.table, format, request.layer, request.options.type);
   return importers::import_table(*source, all_types(), request.options,
                                  [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); });
@@ -59,7 +62,8 @@ importers::ImportedTable read_elements(const ImportRequest& request, StagedLandm
     if (given)
       throw Error(ErrorCode::usage, fmt::format("{} is for tables, not for rules", name), "--rules",
                   "rules give the types and their features");
-  const importers::ImportRules rules = importers::read_import_rules(request.rules);
+  importers::ImportRules rules = importers::read_import_rules(request.rules);
+  if (!request.unit.empty()) rules.unit = request.unit;
   const auto first = [](const std::string& a, const std::string& b) { return a.empty() ? b : a; };
   const auto source = importers::open_elements(request.table, first(request.layer, rules.layer));
   return importers::import_by_rules(*source, request.table, all_types(), rules,

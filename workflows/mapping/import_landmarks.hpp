@@ -14,6 +14,7 @@ struct ImportRequest {
   std::string mapping = {};             ///< file that says what the columns are; the other members win
   std::string rules = {};               ///< file or name of rules for GIS layers, in place of columns
   std::string layer = {};               ///< of a file that holds several
+  std::string unit = {};                ///< of local coordinates, for rules; empty: the file's, else metres
   importers::TableImport options = {};  ///< type, CRSs and columns
   std::string command_line = {};        ///< recorded in the map
 };

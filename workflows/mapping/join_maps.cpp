@@ -5,12 +5,14 @@
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <unordered_set>
 #include <utility>
 
 #include "landmarks/uid_index.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "workflows/mapping/joined_layers.hpp"
+#include "workflows/mapping/map_changes.hpp"
 #include "workflows/mapping/map_evidence.hpp"
 #include "workflows/mapping/merged_types.hpp"
 #include "workflows/mapping/unused_name.hpp"
@@ -95,18 +97,27 @@ bool same_values(const Landmark& a, const Landmark& b) {
 
 Landmark joined(const Landmark& own, const Landmark& other, const pipeline::CommonEvidence& common,
                 std::size_t own_rows, std::size_t other_rows, bool other_is_newer, const LoadedMap& map,
-                JoinCounts& counts) {
+                JoinRecord& record) {
   const auto shared = static_cast<std::size_t>(common.observations);
   const bool has_all = shared == other_rows, is_part = shared == own_rows;
   if (!has_all && !is_part && !same_values(own, other)) {
-    ++counts.fused;
+    ++record.fused;
     Landmark fused = pipeline::fuse_landmarks(own, other, common, map.types, map.crs);
     fused.observations = std::max(fused.observations, static_cast<int>(own_rows + other_rows - shared));
     return fused;
   }
-  ++counts.identical;
+  ++record.identical;
   if (has_all && is_part && !same_values(own, other)) return other_is_newer ? other : own;
   return !has_all && is_part ? other : own;
+}
+
+/// Rejects the observations of a landmark that stood elsewhere when they were made.
+void reject_moved(LoadedMap& map, const std::string& uid) {
+  for (Observation& seen : map.evidence)
+    if (seen.rejected.empty() && seen.landmark_uid == uid) {
+      seen.rejected = "landmark moved since";
+      seen.landmark_uid.clear();
+    }
 }
 
 /// Where the landmarks of a map are in the merged one, by uid.
@@ -175,7 +186,7 @@ std::vector<geodb::RunRecord> join_runs(std::vector<geodb::RunRecord> a,
 
 }  // namespace
 
-LoadedMap join_maps(LoadedMap a, LoadedMap b, JoinCounts& counts) {
+LoadedMap join_maps(LoadedMap a, LoadedMap b, bool b_is_later, JoinRecord& record) {
   const TypeRegistry types = merge_types(a.types, b.types);
   adopt_types(a, types);
   adopt_types(b, types);
@@ -183,7 +194,8 @@ LoadedMap join_maps(LoadedMap a, LoadedMap b, JoinCounts& counts) {
   const Places places_a = places_of(a);
   Places places_b = places_of(b);
   std::vector<Landmark> landmarks = a.landmarks;
-  std::unordered_set<std::string> same;  // landmarks of b whose values a has, too
+  std::unordered_set<std::string> same;          // landmarks of b whose values a has, too
+  std::set<std::pair<bool, std::string>> stale;  // of b or a: landmarks that moved since
   {
     const EvidenceByUid of_a(a), of_b(b);
     const ImagesOfTwo images(a, b);
@@ -191,6 +203,8 @@ LoadedMap join_maps(LoadedMap a, LoadedMap b, JoinCounts& counts) {
     pair_by_uid(a, of_a, b, of_b, images, partners);
     pair_by_place(a, b, partners);
     const bool b_is_newer = b.runs.size() > a.runs.size();
+    record.partners = partners;
+    record.places.clear();
     for (std::size_t j = 0; j < b.landmarks.size(); ++j) {
       const Landmark& other = b.landmarks[j];
       std::size_t& place = places_b.at(other.uid);
@@ -202,11 +216,19 @@ LoadedMap join_maps(LoadedMap a, LoadedMap b, JoinCounts& counts) {
       place = *partners[j];
       const Landmark& own = a.landmarks[place];
       const auto &seen_a = of_a.of(own.uid), &seen_b = of_b.of(other.uid);
-      landmarks[place] = joined(own, other, images.compare(own, seen_a, other, seen_b), seen_a.size(),
-                                seen_b.size(), b_is_newer, a, counts);
+      const pipeline::CommonEvidence common = images.compare(own, seen_a, other, seen_b);
+      if (a.types[own.type].identifies_itself && common.observations == 0 &&
+          !same_place(own, other, a.types, a.crs)) {
+        ++record.moved;
+        if (b_is_later) landmarks[place] = other;
+        stale.insert({!b_is_later, own.uid});
+        continue;
+      }
+      landmarks[place] = joined(own, other, common, seen_a.size(), seen_b.size(), b_is_newer, a, record);
       if (same_values(own, other)) same.insert(other.uid);
     }
   }
+  for (const auto& [of_b, uid] : stale) reject_moved(of_b ? b : a, uid);
   std::erase_if(b.evidence, [&](const Observation& seen) {
     return is_stand_in(seen) && same.contains(seen.landmark_uid);
   });
@@ -222,6 +244,7 @@ LoadedMap join_maps(LoadedMap a, LoadedMap b, JoinCounts& counts) {
   for (const geodb::ImageRecord& image : a.images) names.insert(image.name);
   for (geodb::ImageRecord& image : b.images)
     if (!names.contains(image.name)) a.images.push_back(std::move(image));
+  for (const Landmark& other : b.landmarks) record.places.push_back(places_b.at(other.uid));
   a.landmarks = std::move(landmarks);
   a.evidence = std::move(evidence);
   a.runs = join_runs(std::move(a.runs), b.runs);

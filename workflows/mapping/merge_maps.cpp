@@ -6,13 +6,18 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <tuple>
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 #include "workflows/mapping/join_maps.hpp"
+#include "workflows/mapping/joined_layers.hpp"
+#include "workflows/mapping/map_changes.hpp"
+#include "workflows/mapping/merged_types.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
 
@@ -24,6 +29,12 @@ void check_request(const MergeRequest& request) {
   if (request.maps.size() < 2)
     throw Error(ErrorCode::usage, "a merge needs two maps or more", "",
                 "waymark merge A.gpkg B.gpkg -o C.gpkg");
+  if (request.changes && request.maps.size() != 2)
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("changes are those from one map to a second, not of {} maps", request.maps.size()),
+        "--changes", "waymark merge EARLIER.gpkg LATER.gpkg --changes -o MAP.gpkg");
+  check_number("--max-move", request.max_move, "m", {.help = "", .min = 0, .max = 1e6});
   std::error_code missing;
   for (const std::string& map : request.maps)
     if (std::filesystem::equivalent(map, request.result, missing))
@@ -54,8 +65,41 @@ void check_crs(const LoadedMap& a, const std::string& name_a, const LoadedMap& b
             : fmt::format("convert one first: `waymark export {} OTHER.gpkg --crs {}`", name_b, a.crs.id()));
 }
 
+/// Returns the time of the latest run of a map; empty if it has none.
+std::string last_run(const LoadedMap& map) {
+  return map.runs.empty() ? std::string() : map.runs.back().started_utc;
+}
+
+/// Adds the layer of changes between the maps that were merged, and their numbers.
+void add_changes(std::pair<LoadedMap, LoadedMap> before, bool in_order, const JoinRecord& joined,
+                 double max_move, LoadedMap& merged, MergeResult& result) {
+  auto& [first, second] = before;
+  adopt_types(first, merged.types);
+  adopt_types(second, merged.types);
+  std::vector<std::optional<std::size_t>> partners = joined.partners;
+  if (!in_order) {
+    partners.assign(first.landmarks.size(), {});
+    for (std::size_t j = 0; j < joined.partners.size(); ++j)
+      if (joined.partners[j]) partners[*joined.partners[j]] = j;
+  }
+  const LoadedMap &earlier = in_order ? first : second, &later = in_order ? second : first;
+  const MapChanges found = find_changes(earlier, later, partners, max_move);
+  const auto uid_of = [&](const MapChange& change) {
+    const bool is_later = change.later.has_value();
+    const std::size_t index = is_later ? *change.later : *change.earlier;
+    return merged.landmarks[is_later == in_order ? joined.places[index] : index].uid;
+  };
+  add_layer(merged.layers, change_layer(found, earlier, later, uid_of));
+  for (const MapChange& change : found.changes)
+    ++(change.kind == ChangeKind::gone    ? result.gone
+       : change.kind == ChangeKind::moved ? result.moved
+                                          : result.appeared);
+  result.unchanged = found.unchanged;
+  result.not_covered = found.not_covered;
+}
+
 geodb::RunRecord merge_record(const std::vector<InputFile>& inputs, const LoadedMap& merged,
-                              const MergeResult& counts) {
+                              const MergeResult& counts, bool with_changes) {
   geodb::RunRecord run;
   run.version = program_version();
   run.command_line = "waymark merge";
@@ -65,9 +109,14 @@ geodb::RunRecord merge_record(const std::vector<InputFile>& inputs, const Loaded
   RunJson maps = RunJson::array();
   for (const InputFile& input : inputs) maps.push_back(input.path);
   run.job_json = RunJson{{"merge", maps}}.dump();
-  run.report_json =
-      RunJson{{"landmarks", counts.landmarks}, {"fused", counts.fused}, {"identical", counts.identical}}
-          .dump();
+  RunJson report{{"landmarks", counts.landmarks}, {"fused", counts.fused}, {"identical", counts.identical}};
+  if (with_changes)
+    report.update(RunJson{{"gone", counts.gone},
+                          {"new", counts.appeared},
+                          {"moved", counts.moved},
+                          {"unchanged", counts.unchanged},
+                          {"not_covered", counts.not_covered}});
+  run.report_json = report.dump();
   run.inputs = inputs;
   return run;
 }
@@ -77,20 +126,31 @@ geodb::RunRecord merge_record(const std::vector<InputFile>& inputs, const Loaded
 MergeResult merge_maps(const MergeRequest& request, const Callbacks& callbacks) {
   check_request(request);
   const std::vector<InputFile> inputs = sorted_inputs(request.maps);
-  JoinCounts joined;
+  // Of two maps in the order of time: whether the sorted inputs are in that of the request.
+  const bool in_order = inputs.front().path == request.maps.front();
+  JoinRecord joined;
   LoadedMap merged = load_map(inputs.front().path);
+  std::optional<std::pair<LoadedMap, LoadedMap>> before;
   for (std::size_t i = 1; i < inputs.size(); ++i) {
     LoadedMap next = load_map(inputs[i].path);
     check_crs(merged, inputs.front().path, next, inputs[i].path);
-    merged = join_maps(std::move(merged), std::move(next), joined);
+    if (request.changes) before.emplace(merged, next);
+    const bool next_is_later = request.changes ? in_order : !(last_run(next) < last_run(merged));
+    merged = join_maps(std::move(merged), std::move(next), next_is_later, joined);
   }
   drop_stand_ins(merged);
-  const MergeResult result{.landmarks = static_cast<std::int64_t>(merged.landmarks.size()),
-                           .fused = joined.fused,
-                           .identical = joined.identical};
+  MergeResult result{.landmarks = static_cast<std::int64_t>(merged.landmarks.size()),
+                     .fused = joined.fused,
+                     .identical = joined.identical,
+                     .disagreeing = joined.moved};
+  if (before) add_changes(std::move(*before), in_order, joined, request.max_move, merged, result);
+  if (joined.moved > 0)
+    callbacks.warning(fmt::format(
+        "{} landmarks that identify themselves are elsewhere in each map: the position of {} counts",
+        joined.moved, request.changes ? "the second map" : "the map with the latest run"));
   if (merged.has_elevations) callbacks.warning("the elevation tiles of the maps are left out");
   geodb::MapContents contents;
-  contents.run = merge_record(inputs, merged, result);
+  contents.run = merge_record(inputs, merged, result, request.changes);
   contents.types = std::move(merged.types);
   contents.crs = merged.crs;
   contents.landmarks = std::move(merged.landmarks);
@@ -101,6 +161,10 @@ MergeResult merge_maps(const MergeRequest& request, const Callbacks& callbacks) 
   geodb::write_map(request.result, contents, {.empty_tables = contents.types.names()});
   callbacks.summary(fmt::format("{}: {} landmarks of {} maps; {} fused, {} identical\n", request.result,
                                 result.landmarks, inputs.size(), result.fused, result.identical));
+  if (request.changes)
+    callbacks.summary(
+        fmt::format("changes: {} gone, {} new, {} moved; {} unchanged, {} not covered by the other map\n",
+                    result.gone, result.appeared, result.moved, result.unchanged, result.not_covered));
   return result;
 }
 

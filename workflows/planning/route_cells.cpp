@@ -31,6 +31,9 @@ Waypoint parse_waypoint(const std::string& name, const std::string& text, const 
   if (numbers.size() < 2 || numbers.size() > 3)
     throw Error(ErrorCode::usage, fmt::format("{} {} is no position", name, text), "",
                 "X,Y or X,Y,YAW in degrees");
+  if (numbers.size() == 3 && name != "--from")
+    throw Error(ErrorCode::usage, fmt::format("{} {} has three numbers: only --from has a yaw", name, text),
+                "", "X,Y in the map's CRS");
   Waypoint point;
   point.at = plan_position(map.frame, numbers[0], numbers[1]);
   if (!(point.at.norm() < kMaxExtent))

@@ -152,6 +152,131 @@ TEST_F(ImportRules, ADrawingInMetresNeedsACrs) {
   EXPECT_NEAR(landmarks("pillar")[0]["x"], 3, 0.01);
 }
 
+/// A room of 6 m by 4 m of single lines, a partition, a column of 0.3 m; lengths times `scale`.
+std::string drawing(int unit, double scale) {
+  std::string text =
+      unit < 0 ? "" : "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n" + std::to_string(unit) + "\n0\nENDSEC\n";
+  text += "0\nSECTION\n2\nENTITIES\n";
+  const auto number = [&](int code, double metres) {
+    text += std::to_string(code) + "\n" + std::to_string(metres * scale) + "\n";
+  };
+  constexpr double kLines[][4] = {{0, 0, 6, 0}, {6, 0, 6, 4}, {6, 4, 0, 4}, {0, 4, 0, 0}, {3, 1, 3, 3}};
+  for (const auto& [x, y, to_x, to_y] : kLines) {
+    text += "0\nLINE\n8\nWALLS\n";
+    number(10, x), number(20, y), number(11, to_x), number(21, to_y);
+  }
+  text += "0\nCIRCLE\n8\nCOLUMNS\n";
+  number(10, 1), number(20, 2), number(40, 0.15);
+  return text + "0\nENDSEC\n0\nEOF\n";
+}
+
+TEST_F(ImportRules, ADrawingIsReadInTheUnitThatItStates) {
+  struct Case {
+    int unit;
+    double scale;
+    std::vector<std::string> words;
+  };
+  const Case cases[] = {{-1, 1, {}},
+                        {6, 1, {}},
+                        {4, 1000, {}},
+                        {1, 1 / 0.0254, {}},
+                        {4, 1, {"--unit", "m"}},
+                        {0, 1000, {"--unit", "mm"}}};
+  for (const Case& c : cases) {
+    std::vector<std::string> words = {"--rules", "floor_plan", "--map-crs", "local"};
+    words.insert(words.end(), c.words.begin(), c.words.end());
+    const Outcome said = import(drawing(c.unit, c.scale), "plan.dxf", words);
+    ASSERT_EQ(said.code, 0) << said.err;
+    const bool converted = c.unit >= 0 && c.unit != 6 && c.words.empty();
+    EXPECT_EQ(said.err.find("$INSUNITS") != std::string::npos, converted) << said.err;
+    const json pillars = landmarks("pillar"), walls = landmarks("wall"), corners = landmarks("wall_corner");
+    ASSERT_EQ(pillars.size(), 1U) << c.unit;
+    EXPECT_NEAR(pillars[0]["x"], 1, 1e-4) << c.unit;
+    EXPECT_NEAR(pillars[0]["diameter"], 0.3, 0.001) << c.unit;
+    ASSERT_EQ(walls.size(), 10U) << c.unit;
+    for (const json& wall : walls)
+      EXPECT_TRUE(std::abs(double(wall["length"]) - 6) < 1e-3 ||
+                  std::abs(double(wall["length"]) - 4) < 1e-3 || std::abs(double(wall["length"]) - 2) < 1e-3)
+          << wall["length"];
+    EXPECT_EQ(corners.size(), 8U) << c.unit;                // the four lines meet
+    EXPECT_EQ(landmarks("wall_end").size(), 4U) << c.unit;  // of the partition alone
+    for (const json& end : landmarks("wall_end")) EXPECT_NEAR(end["x"], 3, 1e-4);
+  }
+  const Outcome unknown =
+      import(drawing(4, 1000), "plan.dxf", {"--rules", "floor_plan", "--map-crs", "local", "--unit", "inch"});
+  EXPECT_EQ(unknown.code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("there is no unit 'inch'"));
+  const Outcome projected = import(drawing(4, 1000), "plan.dxf",
+                                   {"--rules", "floor_plan", "--map-crs", "EPSG:32633", "--unit", "mm"});
+  EXPECT_EQ(projected.code, 2);
+  EXPECT_THAT(projected.err, HasSubstr("coordinates in EPSG:32633 have its unit"));
+  const Outcome table =
+      import("x,y,radius\n1,2,0.5\n", "rocks.csv", {"--type", "rock", "--map-crs", "local", "--unit", "mm"});
+  EXPECT_EQ(table.code, 2);
+  EXPECT_THAT(table.err, HasSubstr("--unit is for rules"));
+}
+
+TEST_F(ImportRules, WaysOfOneWallHaveNoEndsWhereTheyMeet) {
+  const Outcome said = import(R"(<osm version='0.6'>
+ <node id='1' lat='49' lon='8'/><node id='2' lat='49' lon='8.0002'/><node id='3' lat='49' lon='8.0004'/>
+ <node id='4' lat='49.0002' lon='8.0004'/>
+ <way id='10'><nd ref='1'/><nd ref='2'/><tag k='type' v='wall'/></way>
+ <way id='11'><nd ref='3'/><nd ref='2'/><tag k='type' v='wall'/></way>
+ <way id='12'><nd ref='3'/><nd ref='4'/><tag k='type' v='wall'/></way>
+</osm>)",
+                              "lanes.osm", {"--rules", "lanelet2"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_EQ(landmarks("wall").size(), 6U);
+  EXPECT_EQ(landmarks("wall_end").size(), 4U);  // at nodes 1 and 4
+  const json corners = landmarks("wall_corner");
+  ASSERT_EQ(corners.size(), 2U);  // both faces at node 3
+  for (const json& corner : corners) {
+    EXPECT_NEAR(corner["x"], 8.0004, 1e-9);
+    const bool inner = double(corner["opening_angle"]) < std::numbers::pi;
+    EXPECT_NEAR(corner["direction"], (inner ? -0.25 : 0.75) * std::numbers::pi, 0.01);  // north-west
+  }
+}
+
+TEST_F(ImportRules, WhatIsNoBuildingIsNone) {
+  std::string town = kTown;
+  town.replace(town.find("v='house'"), 9, "v='no'");
+  ASSERT_EQ(import(town, "town.osm", {"--rules", "osm"}).code, 0);
+  EXPECT_EQ(landmarks("building").size(), 1U);
+  EXPECT_EQ(landmarks("wall").size(), 4U);
+  town.replace(town.find("v='yes'"), 7, "v='roof'");  // a roof on posts
+  ASSERT_EQ(import(town, "town.osm", {"--rules", "osm"}).code, 0);
+  EXPECT_EQ(landmarks("building").size(), 1U);
+  EXPECT_EQ(landmarks("wall").size(), 0U);
+}
+
+TEST_F(ImportRules, AttributesOfACityModelDoNotHideItsTypesNorInstancesStopIt) {
+  const Outcome said = import(R"({"type": "CityJSON", "version": "2.0",
+    "CityObjects": {
+      "b": {"type": "Building", "attributes": {"type": "house", "id": 7},
+            "geometry": [{"type": "MultiSurface", "lod": "0", "boundaries": [[[0, 1, 2, 3]]]}]},
+      "t": {"type": "SolitaryVegetationObject", "attributes": {"height": 12},
+            "geometry": [{"type": "GeometryInstance", "template": 0, "boundaries": [4],
+                          "transformationMatrix": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}]}},
+    "geometry-templates": {"templates": [{"type": "MultiSurface", "lod": "2", "boundaries": [[[0, 1, 2]]]}],
+                           "vertices-templates": [[0, 0, 0], [1, 0, 0], [0, 1, 0]]},
+    "vertices": [[0, 0, 0], [10, 0, 0], [10, 8, 0], [0, 8, 0], [20, 3, 1]]})",
+                              "city.json", {"--rules", "cityjson", "--map-crs", "local"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json buildings = landmarks("building"), trees = landmarks("tree");
+  ASSERT_EQ(buildings.size(), 1U);
+  EXPECT_EQ(buildings[0]["name"], "b");
+  ASSERT_EQ(trees.size(), 1U);
+  EXPECT_EQ(trees[0]["x"], 20.0);
+  EXPECT_EQ(trees[0]["y"], 3.0);
+}
+
+TEST_F(ImportRules, HeightsMayBeFeetAndInches) {
+  std::string town = kTown;
+  town.replace(town.find("v='6 m'"), 7, "v='16&apos;6&quot;'");
+  ASSERT_EQ(import(town, "town.osm", {"--rules", "osm"}).code, 0);
+  EXPECT_NEAR(landmarks("pole")[0]["height"], 16.5 * 0.3048, 1e-9);
+}
+
 TEST_F(ImportRules, BuildingsOfACityModelStandOnTheirGround) {
   const Outcome said = import(R"({"type": "CityJSON", "version": "1.1",
     "transform": {"scale": [0.01, 0.01, 0.01], "translate": [85000, 447000, 0]},

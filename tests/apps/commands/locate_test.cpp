@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "core/random.hpp"
@@ -129,6 +130,73 @@ TEST_F(Locate, FindsImagesAnywhere) {
   EXPECT_GT(nees / right, 0.2);
   EXPECT_THAT(text_of(folder_ / "positions.csv"), HasSubstr("wrong_probability"));
   EXPECT_THAT(text_of(folder_ / "matches.csv"), HasSubstr(",c"));
+}
+
+// Craters that `waymark craters` finds in a DEM of the Moon, located among those that people mapped.
+TEST(LocateRealCraters, InACatalogueOfTheWholeMoon) {
+  const std::filesystem::path data = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/craters";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not on this machine";
+  const TempFolder folder;
+  const std::string large = folder / "large.gpkg", small = folder / "small.gpkg", moon = folder / "moon.gpkg";
+  for (const auto& [file, map, columns] :
+       {std::array<std::string, 3>{"HeadCraters.csv", large, "x=Lon,y=Lat,radius=Diam_km*500"},
+        {"LROCCraters.csv", small, "x=Long,y=Lat,radius=\"Diameter (km)\"*500"}}) {
+    const Outcome made = waymark({"import", data / "catalogues" / file, "-o", map, "--type", "crater",
+                                  "--map-crs", "IAU_2015:30100", "--columns", columns});
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  ASSERT_EQ(waymark({"merge", large, small, "-o", moon}).code, 0);
+  ASSERT_EQ(
+      waymark({"craters", "--dem", data / "gld100/highland_e160_200.tif", "-o", folder / "found.gpkg"}).code,
+      0);
+  const Outcome found = waymark({"query", folder / "found.gpkg", "--format", "json"});
+  ASSERT_EQ(found.code, 0) << found.err;
+  std::vector<SphereCrater> craters;  // the DEM is an equidistant cylindrical one about 180 E
+  for (const json& c : json::parse(found.out))
+    craters.push_back(
+        {180 + double(c["x"]) / kMoon / kDegree, double(c["y"]) / kMoon / kDegree, c["radius"]});
+  ASSERT_GT(craters.size(), 1000U);
+
+  constexpr double kWidth = 300e3;  // m
+  Random random(51, "windows");
+  std::vector<View> views;
+  std::vector<std::string> words{"locate", moon};
+  for (int i = 0; i < 10; ++i) {  // the last four mirrored
+    const View view{random.uniform(168, 192), random.uniform(-10, 10), 0, random.uniform(-kPi, kPi)};
+    const double scale = random.uniform(150, 600), lat = view.lat * kDegree;
+    std::string text = "x,y,diameter\n";
+    for (const SphereCrater& c : craters) {  // an orthographic image
+      const double a = (c.lon - view.lon) * kDegree, b = c.lat * kDegree;
+      const double e = kMoon * std::cos(b) * std::sin(a),
+                   n = kMoon * (std::cos(lat) * std::sin(b) - std::sin(lat) * std::cos(b) * std::cos(a));
+      const double right = e * std::cos(view.azimuth) - n * std::sin(view.azimuth),
+                   ahead = e * std::sin(view.azimuth) + n * std::cos(view.azimuth);
+      if (std::max(std::abs(right), std::abs(ahead)) > kWidth / 2) continue;
+      text += std::to_string((kWidth / 2 + (i < 6 ? right : -right)) / scale) + "," +
+              std::to_string((kWidth / 2 - ahead) / scale) + "," + std::to_string(2 * c.radius / scale) +
+              "\n";
+    }
+    views.push_back(view);
+    words.push_back(folder / ("window" + std::to_string(i) + ".csv"));
+    write_text(words.back(), text);
+  }
+  words.insert(words.end(), {"-o", folder / "positions.csv", "--format", "json"});
+  const Outcome said = waymark(words);
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json images = json::parse(said.out)["images"];
+  int right = 0;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (!images[i]["located"]) continue;
+    ASSERT_LT(i, 6U) << "a mirrored window";
+    const double north = (double(images[i]["lat_deg"]) - views[i].lat) * kDegree * kMoon,
+                 east = std::remainder(double(images[i]["lon_deg"]) - views[i].lon, 360) * kDegree * kMoon *
+                        std::cos(views[i].lat * kDegree);
+    // The middle of the box of the detections is up to some kilometres from that of the window.
+    EXPECT_LT(std::hypot(north, east), 12e3) << i;
+    EXPECT_LT(double(images[i]["wrong_probability"]), 1e-9) << i;
+    ++right;
+  }
+  EXPECT_GE(right, 5);
 }
 
 TEST_F(Locate, RefusesWhatIsNotInTheMap) {

@@ -117,6 +117,16 @@ TEST_F(Localize, ASensorFileThatIsWrongIsRefused) {
   EXPECT_THAT(no_map.err, HasSubstr("--map"));
 }
 
+TEST_F(Localize, ASensorFileIsChecked) {
+  const std::string file = folder_ / "mine.json";
+  write_text(file, R"({"waymark_sensor": 1, "weights": {"rocks": {"radius": 1}}})");
+  const Outcome typo = waymark({"sensors", file});
+  EXPECT_EQ(typo.code, 0);
+  EXPECT_THAT(typo.err, HasSubstr("no landmark type of this program is named 'rocks'; 'rock' is"));
+  write_text(file, R"({"weights": {}})");
+  EXPECT_THAT(waymark({"sensors", file}).err, HasSubstr("`waymark sensors NAME --format json` prints one"));
+}
+
 TEST_F(Localize, DrivesAreSummarized) {
   MadeDrive drive;
   ASSERT_EQ(localize(drive_log(drive)).code, 0);

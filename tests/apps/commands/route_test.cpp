@@ -295,6 +295,8 @@ TEST_F(RouteCommand, BadRequestsAreRefused) {
   EXPECT_THAT(route({"--weight", "1", "--via", "7"}).err, HasSubstr("--via 7 is no position"));
   EXPECT_THAT(route({"--weight", "1", "--via", "700000,0"}).err,
               HasSubstr("700 km from the middle of the map"));
+  EXPECT_THAT(route({"--weight", "1", "--via", "7,1,90"}).err,
+              HasSubstr("--via 7,1,90 has three numbers: only --from has a yaw"));
   EXPECT_THAT(waymark({"route", map_, "--from=0,0", "--to", "9,0", "--sensor", "descent_camera", "--weight",
                        "1", "-o", folder_ / "r.csv"})
                   .err,

@@ -44,6 +44,26 @@ TEST(MapView, KeepsTheProportionsOfTheGround) {
   EXPECT_NEAR(view.metres_per_unit(), 222.39, 0.01);
 }
 
+TEST(MapView, ShowsTheSideOfTheAntimeridianWithTheLandmarks) {
+  const auto extent = [](std::initializer_list<double> longitudes, const char* crs) {
+    LandmarkType post;
+    post.name = "post";
+    std::vector<LandmarkSection> sections;
+    for (const double x : longitudes)
+      sections.push_back(landmark_section(post, [x](const std::function<void(Landmark &&)>& take) {
+        Landmark landmark;
+        landmark.position.xyz << x, 10, 0;
+        take(std::move(landmark));
+      }));
+    return *extent_of(sections, Crs::from_text(crs));
+  };
+  const Extent across = extent({179.5, -179.5, -179.9}, "EPSG:4326");
+  EXPECT_NEAR(across.west, 179.5, 0.1);
+  EXPECT_NEAR(across.east, 180.5, 0.1);
+  EXPECT_NEAR(extent({-5, 5}, "EPSG:4326").width(), 10, 1) << "across Greenwich";
+  EXPECT_NEAR(extent({-300, 400}, "EPSG:32633").west, -800, 1) << "metres are no longitudes";
+}
+
 TEST(MapView, LongitudesAreUnwrapped) {
   const MapView view = view_of(Crs::from_text("EPSG:4326"), {179, -1, 181, 1});
   EXPECT_EQ(view.unwrap(-179.5), 180.5);

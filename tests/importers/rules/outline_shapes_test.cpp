@@ -74,6 +74,44 @@ TEST(OutlineShapes, BothEndsOfALineHaveTwoFaces) {
   EXPECT_EQ(north.values.at("side"), -1);
 }
 
+TEST(OutlineShapes, ALineThatEndsWhereItBeginsHasACornerThereAndNoEnds) {
+  const std::vector<GeometryPart> room = {
+      {Kind::line, {{0, 0, 0}, {10, 0, 0}, {10, 4, 0}, {0, 4, 0}, {0, 0, 0}}}};
+  const DerivedShapes corners = derive_shapes(room, {.shape = ShapeOf::corners});
+  ASSERT_EQ(corners.shapes.size(), 8U);  // each from inside and outside
+  for (const std::size_t nth : {0U, 1U}) {
+    const auto& seen = at(corners, 0, 0, nth).values;
+    const bool inside = seen.at("opening_angle") < kTurn;
+    EXPECT_NEAR(seen.at("opening_angle"), (inside ? 0.5 : 1.5) * kTurn, 1e-12);
+    EXPECT_NEAR(seen.at("direction"), inside ? kTurn / 4 : -3 * kTurn / 4, 1e-12);
+  }
+  EXPECT_TRUE(derive_shapes(room, {.shape = ShapeOf::ends}).shapes.empty());
+  const DerivedShapes walls = derive_shapes(room, {.shape = ShapeOf::walls});
+  EXPECT_EQ(walls.shapes.size(), 8U);
+  EXPECT_TRUE(walls.omitted.empty());
+  const DerivedShapes area = derive_shapes(room, {.shape = ShapeOf::outline});
+  ASSERT_EQ(area.shapes.size(), 1U);
+  EXPECT_NEAR(area.shapes[0].values.at("area"), 40, 1e-12);
+}
+
+TEST(OutlineShapes, LinesThatMeetAreACornerAndNoEnds) {
+  std::vector<std::vector<SharedVertex>> joined = {
+      {{}, {.corner = false, .wall = false, .joined = true, .next = Eigen::Vector2d(5, 3)}}};
+  const std::vector<GeometryPart> wall = {{Kind::line, {{0, 0, 0}, {5, 0, 0}}}};
+  const DerivedShapes ends = derive_shapes(wall, {.shape = ShapeOf::ends}, joined);
+  ASSERT_EQ(ends.shapes.size(), 2U);
+  EXPECT_EQ(ends.shapes[0].at.x(), 0);
+  const DerivedShapes corner = derive_shapes(wall, {.shape = ShapeOf::corners}, joined);
+  ASSERT_EQ(corner.shapes.size(), 2U);
+  // The wall comes from the west and goes on to the north: the open quarter is north-west.
+  const Shape& first = corner.shapes[0];
+  const Shape& quarter = first.values.at("opening_angle") < kTurn ? first : corner.shapes[1];
+  EXPECT_NEAR(quarter.values.at("opening_angle"), kTurn / 2, 1e-12);
+  EXPECT_NEAR(quarter.values.at("direction"), -kTurn / 4, 1e-12);
+  joined[0][1].next = Eigen::Vector2d(9, 0);  // straight on
+  EXPECT_TRUE(derive_shapes(wall, {.shape = ShapeOf::corners}, joined).shapes.empty());
+}
+
 TEST(OutlineShapes, CentroidOfAnOutlineHasAreaDiameterAndOrientation) {
   auto parts = house();
   const DerivedShapes whole = derive_shapes(parts, {.shape = ShapeOf::centroid});

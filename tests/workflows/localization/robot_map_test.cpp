@@ -46,6 +46,25 @@ TEST_F(ImportedMap, ItsFrameLiesOnTheGroundOfTheLandmarks) {
   EXPECT_EQ(of_table("type,x,y,z\nrock,0,0,50\nrock,9,0,70\n").frame.origin().xyz.z(), 0);  // a local CRS
 }
 
+TEST_F(ImportedMap, TheMiddleOfAGeographicMapIsThatOfItsLandmarks) {
+  const auto origin = [&](const std::string& rows) {
+    write_file(file("globe.csv"), "type,x,y\n" + rows);
+    ImportRequest import{.table = file("globe.csv"), .map = file("globe.gpkg")};
+    import.options.table_crs = "EPSG:4326";
+    import_landmarks(import);
+    const RobotMap map = open_robot_map(file("globe.gpkg"), nullptr).map;
+    for (const localization::MapLandmark& rock : all_landmarks(map, nullptr))
+      EXPECT_LT(rock.at.norm(), 200000);
+    return Eigen::Vector2d(map.frame.origin().xyz.head<2>());
+  };
+  EXPECT_LT((origin("rock,8,46\nrock,9,46\nrock,8,47\nrock,9,47\n") - Eigen::Vector2d(8.5, 46.5)).norm(),
+            0.01);
+  const Eigen::Vector2d antimeridian = origin("rock,179.5,0\nrock,-179.5,0\nrock,179.9,1\nrock,-179.9,-1\n");
+  EXPECT_NEAR(std::abs(antimeridian.x()), 180, 1e-9);
+  EXPECT_NEAR(antimeridian.y(), 0, 1e-9);
+  EXPECT_NEAR(origin("rock,0,89.5\nrock,90,89.5\nrock,180,89.5\nrock,-90,89.5\n").y(), 90, 1e-6);
+}
+
 class SurveyAccuracy : public ImportedMap {
  protected:
   double of_table(const std::string& table) const { return ImportedMap::of_table(table).survey_sd; }

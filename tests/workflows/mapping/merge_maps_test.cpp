@@ -250,6 +250,109 @@ TEST_F(MergeMaps, LayersAreJoined) {
   EXPECT_THAT(geodb::shape_layers(file("d.gpkg")), testing::ElementsAre("ring", "ring_2"));
 }
 
+TEST_F(MergeMaps, ChangesAreFoundWhereBothMapsLook) {
+  // Images of both maps cover x from -5 to 30. Earlier: 0, 10, 25 and 29; later: 0.05, 20, 26.5.
+  add(a_, "rock-3", 25, {"one.png"});
+  add(a_, "rock-4", 29, {"one.png"});
+  add(b_, "rock-5", 26.5, {"three.png"});
+  a_.landmarks[3].features[feature_index(a_.types[a_.landmarks[3].type], "radius")].value = 1.5;
+  add(b_, "rock-6", 60, {"three.png"});  // beyond the images of the earlier map
+  const std::string a = written("a.gpkg", a_), b = written("b.gpkg", b_);
+  const auto rows = [&](const std::vector<std::string>& maps, double max_move) {
+    counts_ = merge_maps({.maps = maps, .result = file("c.gpkg"), .changes = true, .max_move = max_move});
+    EXPECT_TRUE(geodb::validate_map(file("c.gpkg")).empty());
+    std::set<std::string> texts;
+    for (const geodb::Shape& row : geodb::read_shape_layer(file("c.gpkg"), "change").rows) {
+      const auto* uid = std::get_if<std::string>(&row.values[2]);
+      EXPECT_TRUE(geodb::MapStore::open(file("c.gpkg")).find(*uid)) << *uid;
+      const auto* distance = std::get_if<double>(&row.values[5]);
+      texts.insert(std::get<std::string>(row.values[0]) + " " + *uid + " " +
+                   std::to_string(row.parts[0].outer[0].x()).substr(0, 4) + " " +
+                   (distance ? std::to_string(*distance).substr(0, 4) : "-"));
+    }
+    return texts;
+  };
+  EXPECT_THAT(rows({a, b}, 5), testing::ElementsAre("gone rock-2 10.0 -", "gone rock-4 29.0 -",
+                                                    "moved rock-5 26.5 1.50", "new rock-8 20.0 -"));
+  EXPECT_EQ(counts_.gone, 2);
+  EXPECT_EQ(counts_.appeared, 1);
+  EXPECT_EQ(counts_.moved, 1);
+  EXPECT_EQ(counts_.unchanged, 1);
+  EXPECT_EQ(counts_.not_covered, 1);
+  EXPECT_EQ(rows({a, b}, 1).count("gone rock-3 25.0 -"), 1U) << "1.5 m is too far";
+  EXPECT_THAT(rows({b, a}, 5), testing::ElementsAre("gone rock-8 20.0 -", "moved rock-3 25.0 1.50",
+                                                    "new rock-2 10.0 -", "new rock-4 29.0 -"))
+      << "back in time";
+  b_.images[0].gsd = Meters{0.2};  // too coarse for what images of 0.1 m showed
+  EXPECT_EQ(rows({a, written("b.gpkg", b_)}, 5).count("gone rock-2 10.0 -"), 0U);
+  EXPECT_THAT(refusal({.maps = {a, b, a}, .result = file("no.gpkg"), .changes = true}),
+              HasSubstr("from one map to a second, not of 3 maps"));
+  EXPECT_THAT(refusal({.maps = {a, b}, .result = file("no.gpkg"), .changes = true, .max_move = -1}),
+              HasSubstr("--max-move"));
+}
+
+TEST_F(MergeMaps, WithoutImagesTheHullOfTheLandmarksIsCovered) {
+  const auto plot = [](std::vector<std::pair<double, double>> positions) {
+    geodb::MapContents map;
+    map.types = all_types();
+    for (const auto& [x, y] : positions) {
+      add(map, "t" + std::to_string(map.landmarks.size()), x, {});
+      map.landmarks.back().position.xyz.y() = y;
+      map.landmarks.back().quality.seen = map.landmarks.back().quality.visible = 1;
+    }
+    map.run.job_json = map.run.report_json = "{}";
+    return map;
+  };
+  const std::string a = written("a.gpkg", plot({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {5, 4}, {20, 5}}));
+  const std::string b = written("b.gpkg", plot({{0, 0}, {10, 0}, {10, 10}, {0, 10}, {7, 8}}));
+  counts_ = merge_maps({.maps = {a, b}, .result = file("c.gpkg"), .changes = true, .max_move = 1});
+  EXPECT_EQ(counts_.gone, 1) << "(5, 4); (20, 5) is outside the later hull";
+  EXPECT_EQ(counts_.appeared, 1);
+  EXPECT_EQ(counts_.unchanged, 4);
+  EXPECT_EQ(counts_.not_covered, 1);
+  // A rock that moved out of the other map's hull is not gone.
+  const std::string d = written("d.gpkg", plot({{0, 0}, {10, 0}, {10, 9}, {0, 10}, {5, 4}, {20, 5}}));
+  counts_ = merge_maps({.maps = {a, d}, .result = file("e.gpkg"), .changes = true, .max_move = 3});
+  EXPECT_EQ(counts_.moved, 1);
+  EXPECT_EQ(counts_.gone, 0);
+  EXPECT_EQ(counts_.unchanged, 5);
+}
+
+TEST_F(MergeMaps, APostThatMovedStandsWhereItWasSeenLast) {
+  const auto posts = [](double x, const std::string& time) {
+    geodb::MapContents map;
+    map.types = all_types();
+    map.run.job_json = map.run.report_json = "{}";
+    map.run.started_utc = time;
+    for (const char* uid : {"p1", "p2"}) {
+      Landmark l;
+      l.type = map.types.id("beacon");
+      l.uid = uid;
+      l.position.xyz << (uid[1] == '1' ? x : 50 + 0.005 * x), 0, 0;
+      l.covariance = Eigen::Matrix3d::Identity() * 0.01;
+      l.features.resize(map.types[l.type].features.size());
+      l.quality.seen = l.quality.visible = 1;
+      l.quality.feature_confidences.resize(l.features.size());
+      l.attributes.resize(map.types[l.type].attributes.size());
+      map.landmarks.push_back(l);
+    }
+    return map;
+  };
+  const std::string a = written("a.gpkg", posts(0, "2026-05-01T00:00:00Z"));
+  const std::string b = written("b.gpkg", posts(10, "2026-01-01T00:00:00Z"));
+  const geodb::MapStore c = merged({a, b});
+  EXPECT_EQ(counts_.disagreeing, 1);
+  EXPECT_EQ(c.find("p1")->position.xyz.x(), 0) << "the run of a is later";
+  EXPECT_EQ(c.find("p1")->covariance(0, 0), 0.01);
+  EXPECT_EQ(c.find("p2")->quality.seen, 2) << "fused as before";
+  EXPECT_EQ(merged({b, a}, "d.gpkg").find("p1")->position.xyz.x(), 0);
+  counts_ = merge_maps({.maps = {a, b}, .result = file("e.gpkg"), .changes = true});
+  EXPECT_EQ(geodb::MapStore::open(file("e.gpkg")).find("p1")->position.xyz.x(), 10) << "the user's order";
+  EXPECT_TRUE(geodb::validate_map(file("e.gpkg")).empty());
+  EXPECT_EQ(counts_.moved, 1);
+  EXPECT_EQ(counts_.unchanged, 1);
+}
+
 TEST_F(MergeMaps, RefusesWhatCannotBeMerged) {
   const std::string a = written("a.gpkg", a_);
   b_.crs = Crs::from_text("EPSG:32633");
