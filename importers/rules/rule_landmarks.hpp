@@ -14,8 +14,9 @@ namespace waymark::importers {
 ///   import_table(), and if the geometry does not fit the rule (no outline, a wall of zero length, a corner
 ///   shared with a neighbouring building).
 /// - Elements without a matching rule are no rows; `bindings` has the count of each rule.
-/// - Lengths and directions are measured in a plane tangent to the body at each element; directions are from
-///   true north. Local coordinates have the unit of the rules, else that of the file, else metres.
+/// - Lengths and directions are measured in a plane tangent to the body at each element. Directions are found
+///   from true north and turned to that of the map. Local coordinates have the unit of the rules, else that
+///   of the file, else metres.
 /// - Rules that use the outside of outlines, corners or ends read the file twice. 40 to 70 bytes per vertex
 ///   are then kept in memory.
 /// `table_crs` and `map_crs` are those of TableImport. Throws Error{usage} for
