@@ -21,7 +21,8 @@ double convergence(const CrsTransform& to_grid, double lon, double lat) {
   return std::atan2(north.x - here.x, north.y - here.y);
 }
 
-// Turn of the stored picture against the upright one about the view, radians clockwise; EXIF 2.32, table 6.
+// Turn of the axes of the stored picture against those of the upright one, about the view, radians clockwise.
+// Orientation 6 stores the top of the picture in column 0: its columns run down (EXIF 2.32, 4.6.4 A).
 std::optional<double> stored_turn(int orientation) {
   switch (orientation) {
     case 1:
@@ -29,9 +30,9 @@ std::optional<double> stored_turn(int orientation) {
     case 3:
       return std::numbers::pi;
     case 6:
-      return -std::numbers::pi / 2;
-    case 8:
       return std::numbers::pi / 2;
+    case 8:
+      return -std::numbers::pi / 2;
     default:
       return std::nullopt;
   }

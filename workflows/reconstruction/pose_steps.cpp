@@ -65,7 +65,7 @@ PoseSteps pose_steps(const PosePhotosRequest& request, const Photos& photos, con
                      const std::vector<pipeline::ImageToMatch>& images, const pipeline::KeptResults& kept) {
   PoseSteps steps{.matches = {.name = "match_images", .item = "all", .version = 2, .depends_on = ""},
                   .solved = {.name = "solve_poses", .item = "all", .version = 4, .depends_on = ""},
-                  .poses = {.name = "georeference", .item = "all", .version = 2, .depends_on = ""}};
+                  .poses = {.name = "georeference", .item = "all", .version = 3, .depends_on = ""}};
   if (!kept.enabled()) return steps;
   steps.matches.depends_on = key_of_matches(photos, found, images);
   steps.solved.depends_on = steps.matches.fingerprint();
