@@ -198,6 +198,15 @@ TEST_F(ReconstructPhotos, PixelsCountAsStoredWhateverTheOrientation) {
   EXPECT_THAT(turned.err, HasSubstr("6 of 6 images posed"));
 }
 
+TEST_F(ReconstructPhotos, OnePositionInTheWrongHemisphereIsNamed) {
+  positions_[0].lon = -*positions_[0].lon;
+  write_good(6, true);
+  const Outcome made = run_with_lens();
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("frame: EPSG:32632"), HasSubstr("the GPS position of " + names_[0]),
+                              HasSubstr("wrong hemisphere of longitude")));
+}
+
 TEST_F(ReconstructPhotos, GpsGivesTheFrame) {
   write_good(6, true);
   const Outcome made = run_with_lens();

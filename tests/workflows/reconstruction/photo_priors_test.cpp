@@ -4,10 +4,14 @@
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
+#include <tuple>
 
 namespace waymark::test {
 namespace {
 using namespace workflows;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
 
 // A picture on the central meridian of zone 32, whose gimbal looks straight down with the top to the north.
 Photo picture_from_above(int orientation) {
@@ -49,6 +53,43 @@ TEST(PhotoPriors, TurnedPicturesTurnTheAttitude) {
 
 TEST(PhotoPriors, MirroredPicturesHaveNoAttitude) {
   for (const int mirrored : {2, 4, 5, 7}) EXPECT_EQ(stored_axes(mirrored).columns.norm(), 0) << mirrored;
+}
+
+// Five pictures 30 m apart, of which `liar` states another position.
+Photos row_of_pictures(std::size_t liar, const importers::PhotoPosition& stated) {
+  Photos photos;
+  for (std::size_t i = 0; i < 5; ++i) {
+    Photo photo{.name = std::string(1, static_cast<char>('a' + i)) + ".jpg"};
+    photo.metadata.position =
+        importers::PhotoPosition{.lon = 7.5 + 4e-4 * double(i), .lat = 48, .altitude = 500};
+    photo.metadata.height_above_takeoff = 60;
+    if (i == liar) photo.metadata.position = stated;
+    photos.photos.push_back(photo);
+  }
+  return photos;
+}
+
+TEST(PhotoPriors, APositionInTheWrongHemisphereIsNamed) {
+  const std::tuple<importers::PhotoPosition, const char*> lies[] = {
+      {{.lon = -7.5, .lat = 48, .altitude = 500}, "hemisphere of longitude"},
+      {{.lon = 7.5, .lat = -48, .altitude = 500}, "hemisphere of latitude"},
+      {{.lon = 48, .lat = 7.5, .altitude = 500}, "are exchanged"},
+      {{.lon = 7.5, .lat = 51, .altitude = 500}, "check the clock"}};
+  for (const std::size_t liar : {0u, 3u})
+    for (const auto& [stated, cause] : lies) {
+      const PhotoPriors priors = photo_priors(row_of_pictures(liar, stated), "");
+      EXPECT_EQ(priors.crs, "EPSG:32632");
+      EXPECT_EQ(priors.positions.size(), 4u);
+      EXPECT_THAT(priors.warnings,
+                  ElementsAre(AllOf(HasSubstr(liar == 0 ? "a.jpg" : "d.jpg"), HasSubstr(cause))));
+    }
+}
+
+TEST(PhotoPriors, OneWrongAltitudeDoesNotMoveTheTakeOff) {
+  const PhotoPriors priors =
+      photo_priors(row_of_pictures(2, {.lon = 7.5008, .lat = 48, .altitude = 5500}), "");
+  ASSERT_EQ(priors.positions.size(), 5u);
+  for (const auto& p : priors.positions) EXPECT_NEAR(p.position.z(), 500, 1e-9);
 }
 
 }  // namespace

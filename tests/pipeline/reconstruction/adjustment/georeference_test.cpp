@@ -12,6 +12,7 @@ namespace waymark::test {
 namespace {
 using namespace pipeline;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const MadeSceneOptions kOptions{.seed = 8, .tilt = 0.1, .corner = {645000, 5123000, 400}};
@@ -105,6 +106,19 @@ TEST(Georeference, ABlunderIsNamed) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found.adjustment.control[i].used, i != 1) << i;
   EXPECT_THAT(found.messages, Contains(HasSubstr("control point P01 is ")));
   EXPECT_LT(largest_chi2(made.start, made.truth), 21);
+}
+
+// What a frame bends grows with its extent, which a blunder must not enlarge.
+TEST(Georeference, ABlunderOfKilometresIsNamed) {
+  for (const double metres : {1e3, 2e4, 2e6}) {
+    MadeScene made = free_scene(kOptions);
+    Observations seen{.positions = made_positions(made.truth, 0.5, 3)};
+    seen.positions[4].position.z() += metres;
+    const Georeferenced found = georeference(made.start, seen);
+    EXPECT_TRUE(found.metric) << metres;
+    EXPECT_THAT(found.messages, ElementsAre(HasSubstr("position of image ")));
+    EXPECT_LT(largest_chi2(made.start, made.truth), 21) << metres;
+  }
 }
 
 TEST(Georeference, ASmallBlunderIsNamedByItsTest) {
