@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/pipeline/reconstruction/made_scene.hpp"
 
@@ -119,6 +120,25 @@ TEST(Georeference, ABlunderOfKilometresIsNamed) {
     EXPECT_THAT(found.messages, ElementsAre(HasSubstr("position of image ")));
     EXPECT_LT(largest_chi2(made.start, made.truth), 21) << metres;
   }
+}
+
+TEST(Georeference, AHeightThatIsNotSurveyedHasNoError) {
+  MadeScene made = free_scene(kOptions);
+  Observations seen{.control = made_control(made, kOptions, 3, 3, 0.02)};
+  for (const std::size_t i : {1u, 4u, 7u})
+    seen.control[i].position.z() = 0, seen.control[i].sd.z() = std::numeric_limits<double>::infinity();
+  seen.control[4].check = seen.control[5].check = seen.control[7].check = true;
+  seen.control[7].position.x() += 50;
+  const Georeferenced found = georeference(made.start, seen);
+  EXPECT_TRUE(found.metric);
+  const auto& control = found.adjustment.control;
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(std::isnan(control[i].error.z()), i == 1 || i == 4 || i == 7) << i;
+    EXPECT_LT(control[i].error.head<2>().norm(), i == 7 ? 51 : 0.3) << i;
+  }
+  EXPECT_TRUE(control[1].used);
+  EXPECT_LT(control[4].statistic, 4);
+  EXPECT_GT(control[7].statistic, 4);  // its two other coordinates are tested
 }
 
 TEST(Georeference, ASmallBlunderIsNamedByItsTest) {
