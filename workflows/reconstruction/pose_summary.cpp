@@ -139,7 +139,7 @@ std::string pose_summary(const PosedPhotos& posed, const std::vector<exporters::
     squares += 2 * double(point.marks.size()) * point.error * point.error;
     marks += double(point.marks.size());
   }
-  std::string text = fmt::format("{} of {} images posed", posed.posed, posed.scene.images.size());
+  std::string text = fmt::format("{} of {} images posed", posed.posed, posed.posed + posed.failures.size());
   if (posed.components.size() > 1)
     text += fmt::format("; the images form {} groups without common points: {}", posed.components.size(),
                         fmt::join(posed.components, ", "));
