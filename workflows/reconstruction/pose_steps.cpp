@@ -31,8 +31,9 @@ std::string key_of_matches(const Photos& photos, const PhotoFeatures& found,
 
 // Each layout serves both directions; `value` is const when it is written.
 constexpr auto kLadderStep = [](auto& io, auto& step) {
-  io(step.lens, step.parameter, step.admitted, step.value, step.sd, step.prior_sd, step.correlation,
-     step.correlated_with, step.left_out_before, step.left_out_after, step.reason);
+  io(step.lens, step.parameter, step.admitted, step.value, step.sd, step.prior_value, step.prior_sd,
+     step.contradicts, step.correlation, step.correlated_with, step.left_out_before, step.left_out_after,
+     step.reason);
 };
 
 constexpr auto kControl = [](auto& io, auto& point) {
