@@ -35,6 +35,9 @@ class Reconstruct final : public Command {
                       "Camera file with the poses, in any format that load_images reads"}
                  .or_else("poses are solved from the images")
                  .offering(Offer::file),
+             Argument{"--camera-crs", "CRS", &request_.camera_crs,
+                      "CRS of the positions in --cameras, if the file names none: COLMAP, Bundler"}
+                 .or_else("such poses are tied to the map by --control"),
              Argument{
                  "--lens,--camera", "FILE", &request_.lens,
                  "Camera file whose lens is kept, e.g. cameras.json of an earlier flight; it may name other "
@@ -46,10 +49,12 @@ class Reconstruct final : public Command {
                  "Seconds from the first to the last row of a rolling shutter: poses are solved with the "
                  "motion of the camera, which needs times of exposure (EXIF, or taken_utc in --lens)"}
                  .or_else("that of --lens, else a global shutter"),
-             Argument{"--control", "POINTS", &request_.control,
-                      "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
-                      "names that "
-                      "begin with check are check points"}
+             Argument{
+                 "--control", "POINTS", &request_.control,
+                 "Surveyed points: gcp_list.txt of OpenDroneMap, or a layer of points with --marks; "
+                 "names that begin with check are check points. With --cameras: a table with the columns "
+                 "image,x,y,z or frame_x,frame_y,frame_z,x,y,z that ties poses of an arbitrary frame to "
+                 "the map"}
                  .or_else("GPS positions of the images, else --map, else --dem")
                  .offering(Offer::file),
              Argument{"--marks", "TABLE", &request_.marks,
@@ -98,10 +103,9 @@ class Reconstruct final : public Command {
               "In true size by heights above ground, with nothing else"},
              {"waymark reconstruct images --map orbital_mosaic.tif -o site",
               "From pictures and an orthophoto of the site"},
-             {"waymark reconstruct images --cameras colmap/images.txt --crs EPSG:32651 --dem mola.tif "
-              "--until "
-              "dem -o site",
-              "A DEM from poses of COLMAP, started at a coarse one"}},
+             {"waymark reconstruct images --cameras colmap/sparse/0 --control gnss.csv --crs EPSG:32651 "
+              "--dem srtm.tif --until dem -o site",
+              "A DEM from poses of COLMAP, tied to the map, started at a coarse one"}},
         .result = result_keys()};
   }
 

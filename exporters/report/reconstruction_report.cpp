@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "exporters/formatting.hpp"
 #include "exporters/report/page_style.hpp"
@@ -65,9 +66,11 @@ std::string control_table(const ReconstructionReport& report) {
     rows += "<tr>" + row_head(p.name) + cell(p.check ? "check" : p.used ? "control" : "<b>left out</b>");
     if (p.error) {
       for (int axis = 0; axis < 3; ++axis)
-        rows +=
-            cell(fmt::format("{:.3f}{}", (*p.error)[axis],
-                             p.sd[axis] > 0 ? fmt::format("<small>\u00b1 {:.3f}</small>", p.sd[axis]) : ""));
+        rows += std::isnan((*p.error)[axis])
+                    ? cell("not surveyed")
+                    : cell(fmt::format(
+                          "{:.3f}{}", (*p.error)[axis],
+                          p.sd[axis] > 0 ? fmt::format("<small>\u00b1 {:.3f}</small>", p.sd[axis]) : ""));
       rows += number_cell(p.error->head<2>().norm(), 3) + number_cell(p.mark_rms, 2) +
               number_cell(p.statistic, 1);
     } else {

@@ -27,7 +27,7 @@ struct ReportedPoint {
   std::string name = {};
   bool check = false, used = false;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< surveyed
-  std::optional<Eigen::Vector3d> error = {};     ///< estimated - surveyed, metres
+  std::optional<Eigen::Vector3d> error = {};     ///< estimated - surveyed, metres; NaN: not surveyed
   Eigen::Vector3d sd = Eigen::Vector3d::Zero();  ///< of the estimate, metres
   double mark_rms = 0;                           ///< pixels
   double statistic = 0;                          ///< of the blunder test, standard deviations

@@ -26,13 +26,21 @@ bool is_true(std::string_view cell) {
   return text == "1" || text == "true" || text == "yes" || text == "check" || text == "t" || text == "y";
 }
 
+// Height of a point, NaN if unknown. Points of a layer without a third coordinate may have it in a column.
+double height_of(const NamedCells& cells) {
+  for (const std::string_view name : {"z", "geom_z", "height", "elevation"})
+    if (const auto column = cells.find({name}); column && !is_missing(cells.text(*column)))
+      return cells.number(*column, kNeeded);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
 GroundControl read_points(const std::string& path) {
   NamedCells cells(path);
   const char* hint = "points need a name, x, y and z";
   const std::size_t name = cells.need("name", {"name", "point", "id", "label"}, hint);
   const std::size_t x = cells.need("x", {"geom_x", "x", "easting", "lon", "longitude"}, hint);
   const std::size_t y = cells.need("y", {"geom_y", "y", "northing", "lat", "latitude"}, hint);
-  const std::size_t z = cells.need("z", {"z", "geom_z", "height", "elevation"}, hint);
+  cells.need("z", {"z", "geom_z", "height", "elevation"}, hint);
   const auto check = cells.find({"check"});
   const auto sd_x = cells.find({"x_sd", "position_sd", "sd"}),
              sd_y = cells.find({"y_sd", "position_sd", "sd"}), sd_z = cells.find({"z_sd", "sd"});
@@ -49,9 +57,7 @@ GroundControl read_points(const std::string& path) {
     if (std::ranges::count(all.points, point.name, &GroundControlPoint::name) > 0)
       throw Error(ErrorCode::input, fmt::format("two control points have the name '{}'", point.name),
                   cells.location(), "give each point its own name");
-    const double height =
-        is_missing(cells.text(z)) ? std::numeric_limits<double>::quiet_NaN() : cells.number(z, kNeeded);
-    point.position = {cells.number(x, kNeeded), cells.number(y, kNeeded), height};
+    point.position = {cells.number(x, kNeeded), cells.number(y, kNeeded), height_of(cells)};
     const GroundControlPoint usual;
     point.sd = {cells.deviation(sd_x, usual.sd.x()), cells.deviation(sd_y, usual.sd.y()),
                 cells.deviation(sd_z, usual.sd.z())};

@@ -22,9 +22,10 @@ constexpr const char* kLine = "each line holds: easting northing height column r
 // "WGS84 UTM 32N" becomes "EPSG:32632"; other texts stay.
 std::string crs_of(const TextRow& row) {
   const auto& words = row.words;
-  if (words.size() == 3 && words[0] == "WGS84" && words[1] == "UTM" && words[2].size() >= 2) {
+  if (words.size() == 3 && lower_case(words[0]) == "wgs84" && lower_case(words[1]) == "utm" &&
+      words[2].size() >= 2) {
     double zone = 0;
-    const char side = words[2].back();
+    const char side = words[2].back() == 'n' ? 'N' : words[2].back() == 's' ? 'S' : words[2].back();
     if (parse_number(std::string_view(words[2]).substr(0, words[2].size() - 1), zone) && zone >= 1 &&
         zone <= 60 && (side == 'N' || side == 'S'))
       return fmt::format("EPSG:{}", (side == 'N' ? 32600 : 32700) + static_cast<int>(zone));

@@ -171,6 +171,12 @@ CameraSet place_cameras(const CameraFile& given, const std::string& path, const 
   CameraSet set;
   set.crs = map_crs(file, path, import);
   set.warnings = file.warnings;
+  if (file.world.axes != Axes::arbitrary && (!import.control_points.empty() || import.map_from_frame))
+    set.warnings.push_back(
+        fmt::format("{} {} not used: {} the frame of the poses",
+                    import.map_from_frame ? "the similarity" : import.control_points,
+                    import.map_from_frame ? "is" : "are",
+                    given.world.axes == Axes::arbitrary ? "camera_crs states" : "the camera file states"));
   Placer placer(file, path, import, set);
   for (const CameraRecord& record : file.images) placer.place(record);
   return set;

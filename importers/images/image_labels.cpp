@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "importers/images/exif_tags.hpp"
 #include "importers/images/sun_position.hpp"
 #include "importers/json_value.hpp"
 #include "importers/tables/text_table.hpp"
@@ -18,13 +19,6 @@ namespace waymark::importers {
 namespace {
 
 constexpr std::size_t kLabelBytes = std::size_t{1} << 18;
-
-std::string item(GDALDataset& dataset, const char* name) {
-  const char* value = dataset.GetMetadataItem(name);
-  std::string text = value ? value : "";
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
-  return text;
-}
 
 // Converts "2019:04:11 11:01:21" to "2019-04-11T11:01:21".
 std::string iso(std::string exif) {
@@ -74,19 +68,19 @@ bool is_label(std::string_view head) {
 }  // namespace
 
 TimeTaken time_taken(GDALDataset& dataset, const std::string& time_zone) {
+  const ExifTags exif = read_exif_tags(dataset);
   TimeTaken taken;
-  std::string time = iso(item(dataset, "EXIF_DateTimeOriginal"));
-  if (time.empty()) time = iso(item(dataset, "EXIF_DateTime"));
-  std::string offset = item(dataset, "EXIF_OffsetTimeOriginal");
-  if (offset.empty()) offset = item(dataset, "EXIF_OffsetTime");
+  std::string time = iso(exif.text("EXIF_DateTimeOriginal"));
+  if (time.empty()) time = iso(exif.text("EXIF_DateTime"));
+  std::string offset = exif.text("EXIF_OffsetTimeOriginal");
+  if (offset.empty()) offset = exif.text("EXIF_OffsetTime");
   if (!time.empty() && !offset.empty()) taken.utc = utc_seconds(time + offset);
-  if (!taken.utc)
-    taken.utc = gps_time(item(dataset, "EXIF_GPSDateStamp"), item(dataset, "EXIF_GPSTimeStamp"));
+  if (!taken.utc) taken.utc = gps_time(exif.text("EXIF_GPSDateStamp"), exif.text("EXIF_GPSTimeStamp"));
   if (!taken.utc && !time.empty() && !time_zone.empty()) taken.utc = utc_seconds(time + time_zone);
   if (!taken.utc) taken.local = time;
   taken.clock = time.empty() ? taken.utc : utc_seconds(time + "Z");
   double fraction = 0;
-  if (const std::string digits = item(dataset, "EXIF_SubSecTime_Original");
+  if (const std::string digits = exif.text("EXIF_SubSecTime_Original");
       taken.clock && !time.empty() && !digits.empty() && parse_number("0." + digits, fraction))
     *taken.clock += fraction;
   return taken;

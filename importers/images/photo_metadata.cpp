@@ -9,18 +9,12 @@
 #include <string_view>
 #include <vector>
 
+#include "importers/images/exif_tags.hpp"
 #include "importers/images/image_header.hpp"
 #include "importers/tables/text_table.hpp"
 
 namespace waymark::importers {
 namespace {
-
-std::string exif(GDALDataset& dataset, const char* name) {
-  const char* value = dataset.GetMetadataItem(name);
-  std::string text = value ? value : "";
-  while (!text.empty() && (text.back() == ' ' || text.back() == '\0')) text.pop_back();
-  return text;
-}
 
 // Parses "(46) (50) (33.3855)", "(3.61)" and "20".
 std::vector<double> exif_numbers(const std::string& text) {
@@ -38,20 +32,20 @@ std::vector<double> exif_numbers(const std::string& text) {
   return out;
 }
 
-std::optional<double> exif_number(GDALDataset& dataset, const char* name) {
-  const std::vector<double> all = exif_numbers(exif(dataset, name));
+std::optional<double> exif_number(const ExifTags& exif, const char* name) {
+  const std::vector<double> all = exif_numbers(exif.text(name));
   return all.empty() ? std::nullopt : std::optional(all[0]);
 }
 
 // Degrees, minutes, seconds with the letter of the hemisphere.
-std::optional<double> exif_angle(GDALDataset& dataset, const char* name, const char* reference, char negative,
+std::optional<double> exif_angle(const ExifTags& exif, const char* name, const char* reference, char negative,
                                  double limit) {
-  const std::vector<double> part = exif_numbers(exif(dataset, name));
+  const std::vector<double> part = exif_numbers(exif.text(name));
   if (part.empty()) return std::nullopt;
   double value = part[0];
   if (part.size() > 1) value += part[1] / 60;
   if (part.size() > 2) value += part[2] / 3600;
-  if (const std::string letter = exif(dataset, reference); !letter.empty() && letter[0] == negative)
+  if (const std::string letter = exif.text(reference); !letter.empty() && letter[0] == negative)
     value = -value;
   return std::abs(value) <= limit ? std::optional(value) : std::nullopt;
 }
@@ -77,38 +71,46 @@ std::optional<double> xmp_number(std::string_view xmp, std::string_view name) {
   return std::nullopt;
 }
 
-void read_focal_length(GDALDataset& dataset, PhotoMetadata& photo) {
+// Pixels of this file per pixel of the camera's: the longer sides are compared, since programs that turn a
+// picture leave the dimensions that EXIF states.
+double scale_of_file(const ExifTags& exif, const PhotoMetadata& photo) {
+  const double columns = exif_number(exif, "EXIF_PixelXDimension").value_or(0);
+  const double rows = exif_number(exif, "EXIF_PixelYDimension").value_or(0);
+  if (!(columns > 0)) return 1;
+  if (!(rows > 0)) return double(photo.columns) / columns;
+  return double(std::max(photo.columns, photo.rows)) / std::max(columns, rows);
+}
+
+void read_focal_length(const ExifTags& exif, PhotoMetadata& photo) {
   const double longer = double(std::max(photo.columns, photo.rows));
   photo.focal = 0.85 * longer;
   const auto plausible = [&](double focal) { return focal > 0.2 * longer && focal < 60 * longer; };
-  const auto film = exif_number(dataset, "EXIF_FocalLengthIn35mmFilm");
+  const auto film = exif_number(exif, "EXIF_FocalLengthIn35mmFilm");
   if (film && plausible(*film / 36 * longer)) {
     photo.focal = *film / 36 * longer;
     photo.focal_sd = 0.05;
     photo.focal_source = FocalSource::film_equivalent;
   }
-  const auto millimetres = exif_number(dataset, "EXIF_FocalLength");
-  const auto resolution = exif_number(dataset, "EXIF_FocalPlaneXResolution");
+  const auto millimetres = exif_number(exif, "EXIF_FocalLength");
+  const auto resolution = exif_number(exif, "EXIF_FocalPlaneXResolution");
   if (!millimetres || !resolution || !(*resolution > 0)) return;
-  const int unit = static_cast<int>(exif_number(dataset, "EXIF_FocalPlaneResolutionUnit").value_or(2));
+  const int unit = static_cast<int>(exif_number(exif, "EXIF_FocalPlaneResolutionUnit").value_or(2));
   const double unit_mm = unit == 3 ? 10 : unit == 4 ? 1 : unit == 5 ? 1e-3 : 25.4;
-  const double written = exif_number(dataset, "EXIF_PixelXDimension").value_or(double(photo.columns));
-  const double focal =
-      *millimetres * *resolution / unit_mm * (written > 0 ? double(photo.columns) / written : 1);
+  const double focal = *millimetres * *resolution / unit_mm * scale_of_file(exif, photo);
   if (!plausible(focal)) return;
   photo.focal = focal;
   photo.focal_sd = 0.03;
   photo.focal_source = FocalSource::plane_resolution;
 }
 
-void read_position(GDALDataset& dataset, PhotoMetadata& photo) {
-  const auto lat = exif_angle(dataset, "EXIF_GPSLatitude", "EXIF_GPSLatitudeRef", 'S', 90);
-  const auto lon = exif_angle(dataset, "EXIF_GPSLongitude", "EXIF_GPSLongitudeRef", 'W', 180);
+void read_position(const ExifTags& exif, PhotoMetadata& photo) {
+  const auto lat = exif_angle(exif, "EXIF_GPSLatitude", "EXIF_GPSLatitudeRef", 'S', 90);
+  const auto lon = exif_angle(exif, "EXIF_GPSLongitude", "EXIF_GPSLongitudeRef", 'W', 180);
   if (!lat || !lon || (*lat == 0 && *lon == 0)) return;  // receivers without a fix write zeros
   photo.position = {.lon = *lon, .lat = *lat};
-  auto altitude = exif_number(dataset, "EXIF_GPSAltitude");
+  auto altitude = exif_number(exif, "EXIF_GPSAltitude");
   if (!altitude || std::abs(*altitude) > 2e5) return;
-  const std::string below = exif(dataset, "EXIF_GPSAltitudeRef");
+  const std::string below = exif.text("EXIF_GPSAltitudeRef");
   if (below == "0x01" || below == "1") altitude = -*altitude;
   photo.position->altitude = altitude;
 }
@@ -120,13 +122,14 @@ PhotoMetadata read_photo_metadata(GDALDataset& dataset, const std::string& path)
   PhotoMetadata photo{.columns = header.columns, .rows = header.rows};
   std::array<double, 6> transform{};
   photo.is_orthophoto = dataset.GetGeoTransform(transform.data()) == CE_None && dataset.GetSpatialRef();
-  photo.camera = exif(dataset, "EXIF_Make");
-  if (const std::string model = exif(dataset, "EXIF_Model"); !model.empty())
+  const ExifTags exif = read_exif_tags(dataset);
+  photo.camera = exif.text("EXIF_Make");
+  if (const std::string model = exif.text("EXIF_Model"); !model.empty())
     photo.camera += (photo.camera.empty() ? "" : " ") + model;
-  if (const auto turn = exif_number(dataset, "EXIF_Orientation"); turn && *turn >= 1 && *turn <= 8)
+  if (const auto turn = exif_number(exif, "EXIF_Orientation"); turn && *turn >= 1 && *turn <= 8)
     photo.orientation = static_cast<int>(*turn);
-  read_focal_length(dataset, photo);
-  read_position(dataset, photo);
+  read_focal_length(exif, photo);
+  read_position(exif, photo);
   char** const xmp_lines = dataset.GetMetadata("xml:XMP");
   const std::string_view xmp = xmp_lines && xmp_lines[0] ? xmp_lines[0] : "";
   photo.height_above_takeoff = xmp_number(xmp, "RelativeAltitude");

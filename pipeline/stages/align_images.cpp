@@ -40,7 +40,7 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Corrects the poses of images by the landmarks they share",
-            .version = 8,
+            .version = 9,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};

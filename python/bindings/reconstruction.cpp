@@ -14,6 +14,7 @@ const Keywords<workflows::ReconstructRequest>& reconstruct_keywords() {
                               .add("images", &R::images)
                               .add("folder", &R::folder)
                               .add("cameras", &R::cameras)
+                              .add("camera_crs", &R::camera_crs)
                               .add("lens", &R::lens)
                               .add("readout_time", &R::readout_time)
                               .add("control", &R::control)

@@ -1066,14 +1066,15 @@ def read_map(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
 
-def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., lens: _Path = ..., readout_time: float = ..., control: _Path = ..., marks: _Path = ..., altimeter: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
+def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., camera_crs: _Path = ..., lens: _Path = ..., readout_time: float = ..., control: _Path = ..., marks: _Path = ..., altimeter: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 
     until: "poses", "dem" or "ortho". options: cameras, lens, control, marks, dem, crs, cell, map, threads.
     Raises UnitsFailed if some images have no pose or some units of the map failed; what could be made is there.
 
     Keywords:
-        cameras: camera file with the poses, which names the images if none are given; empty: they are solved
+        cameras: camera file with the poses, which names the images if none are given; empty: they are solved; `control` then ties them to the map
+        camera_crs: CRS of the positions, if the file names none
         lens: camera file whose lens is kept fixed; empty: self-calibration
         readout_time: s from the first row to the last, where `lens` states none
         control: surveyed points; empty: none

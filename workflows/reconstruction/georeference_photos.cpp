@@ -50,6 +50,7 @@ PhotoReferences references_of(const PosedPhotos& posed, const Photos& photos, co
     return out;
   }
   const PhotoPriors priors = photo_priors(photos, control.crs.empty() ? crs : control.crs);
+  messages.insert(messages.end(), priors.warnings.begin(), priors.warnings.end());
   if (out.crs.empty()) out.crs = priors.crs;
   out.seen.height_bias_sd = PriorAccuracy{}.height_bias;
   for (const pipeline::ObservedPosition& p : priors.positions)

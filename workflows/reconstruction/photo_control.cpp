@@ -7,44 +7,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <optional>
 #include <set>
-#include <utility>
 
 #include "core/error.hpp"
 #include "geo/crs.hpp"
 #include "importers/cameras/camera_file.hpp"
 #include "importers/cameras/ground_control.hpp"
+#include "workflows/reconstruction/photo_positions.hpp"
 #include "workflows/reconstruction/posed_images.hpp"
 
 namespace waymark::workflows {
 namespace {
-
-constexpr double kFarAway = 1;  // degrees: no flight is that long
-
-struct LonLat {
-  double lon = 0, lat = 0;
-};
-
-double degrees_apart(const LonLat& a, const LonLat& b) {
-  const double shrink = std::cos(std::clamp(b.lat, -90.0, 90.0) * std::numbers::pi / 180);
-  return std::hypot(std::remainder(a.lon - b.lon, 360) * shrink, a.lat - b.lat);
-}
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-std::optional<LonLat> middle_of_positions(const Photos& photos) {
-  std::vector<double> lons, lats;
-  for (const Photo& photo : photos.photos)
-    if (const auto& at = photo.metadata.position) lons.push_back(at->lon), lats.push_back(at->lat);
-  if (lons.empty()) return std::nullopt;
-  return LonLat{median_of(std::move(lons)), median_of(std::move(lats))};
-}
 
 Crs crs_of_points(const importers::GroundControl& found, const PhotoControlRequest& request) {
   const std::string& text = found.crs.empty() ? request.crs : found.crs;
@@ -85,8 +59,8 @@ void check_exchange(const importers::GroundControl& found, const Crs& crs, const
   const CrsTransform to_degrees(crs, geographic_crs(crs));
   const Eigen::Vector3d& first = found.points.front().position;
   const auto as_given = to_degrees(first.x(), first.y()), exchanged = to_degrees(first.y(), first.x());
-  if (degrees_apart({as_given.x, as_given.y}, *middle) < kFarAway) return;
-  if (degrees_apart({exchanged.x, exchanged.y}, *middle) < kFarAway)
+  if (degrees_apart({as_given.x, as_given.y}, *middle) < kLongestFlight) return;
+  if (degrees_apart({exchanged.x, exchanged.y}, *middle) < kLongestFlight)
     throw Error(ErrorCode::input,
                 "the two horizontal coordinates of the control points are exchanged: they fit the GPS "
                 "positions of the images only the other way round",
@@ -182,17 +156,10 @@ std::string contradiction_of_positions(const PhotoControl& control, const Photos
   const Eigen::Vector3d at = control.points.front().position / crs.metres_per_unit();
   const auto degrees = CrsTransform(crs, geographic_crs(crs))(at.x(), at.y());
   const LonLat truth{degrees.x, degrees.y};
-  if (degrees_apart(*middle, truth) < kFarAway) return "";
-  std::string why = "check the clock and the settings of the camera";
-  const std::pair<const char*, LonLat> causes[] = {
-      {"latitude and longitude are exchanged in them", {middle->lat, middle->lon}},
-      {"they name the wrong hemisphere of latitude", {middle->lon, -middle->lat}},
-      {"they name the wrong hemisphere of longitude", {-middle->lon, middle->lat}}};
-  for (const auto& [cause, corrected] : causes)
-    if (degrees_apart(corrected, truth) < kFarAway) why = cause;
+  if (degrees_apart(*middle, truth) < kLongestFlight) return "";
   return fmt::format(
       "the GPS positions of the images are not used: they are {:.0f} km from the control points; {}",
-      degrees_apart(*middle, truth) * 111, why);
+      degrees_apart(*middle, truth) * 111, cause_of_distance(*middle, truth));
 }
 
 }  // namespace waymark::workflows

@@ -3,12 +3,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.hpp"
 #include "geo/crs.hpp"
 #include "importers/cameras/camera_file.hpp"
+#include "workflows/reconstruction/photo_positions.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -21,7 +24,8 @@ double convergence(const CrsTransform& to_grid, double lon, double lat) {
   return std::atan2(north.x - here.x, north.y - here.y);
 }
 
-// Turn of the stored picture against the upright one about the view, radians clockwise; EXIF 2.32, table 6.
+// Turn of the axes of the stored picture against those of the upright one, about the view, radians clockwise.
+// Orientation 6 stores the top of the picture in column 0: its columns run down (EXIF 2.32, 4.6.4 A).
 std::optional<double> stored_turn(int orientation) {
   switch (orientation) {
     case 1:
@@ -29,9 +33,9 @@ std::optional<double> stored_turn(int orientation) {
     case 3:
       return std::numbers::pi;
     case 6:
-      return -std::numbers::pi / 2;
-    case 8:
       return std::numbers::pi / 2;
+    case 8:
+      return -std::numbers::pi / 2;
     default:
       return std::nullopt;
   }
@@ -43,6 +47,12 @@ Eigen::Matrix3d attitude_of(const importers::GimbalAngles& gimbal, double grid_y
   return Eigen::AngleAxisd(-grid_yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix() * level *
          Eigen::AngleAxisd(gimbal.pitch * kPriorDegree, Eigen::Vector3d::UnitX()).toRotationMatrix() *
          Eigen::AngleAxisd(gimbal.roll * kPriorDegree + turn, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+}
+
+// Mean of the two middle values of an even number.
+double middle_value(std::vector<double> values) {
+  std::ranges::sort(values);
+  return (values[(values.size() - 1) / 2] + values[values.size() / 2]) / 2;
 }
 
 // Heights above take-off where all pictures have them, since they are more exact. One altitude or more
@@ -58,18 +68,25 @@ struct HeightSource {
 
 HeightSource height_source(const Photos& photos) {
   HeightSource out;
-  double sum = 0;
-  int count = 0;
+  std::vector<double> takeoffs;
   for (const Photo& photo : photos.photos) {
     const importers::PhotoMetadata& m = photo.metadata;
     if (!m.position) continue;
     out.relative = out.relative && m.height_above_takeoff.has_value();
-    if (!m.height_above_takeoff || !m.position->altitude) continue;
-    sum += *m.position->altitude - *m.height_above_takeoff;
-    ++count;
+    if (m.height_above_takeoff && m.position->altitude)
+      takeoffs.push_back(*m.position->altitude - *m.height_above_takeoff);
   }
-  if (count > 0) out.takeoff = sum / count;
+  if (!takeoffs.empty()) out.takeoff = middle_value(takeoffs);
   return out;
+}
+
+// Returns why the position of a picture cannot be right beside those of the others; empty if it can.
+std::string refusal_of_position(const Photo& photo, const LonLat& middle) {
+  const LonLat stated{photo.metadata.position->lon, photo.metadata.position->lat};
+  const double degrees = degrees_apart(stated, middle);
+  if (degrees < kLongestFlight) return {};
+  return fmt::format("the GPS position of {} is not used: it is {:.0f} km from those of the other images; {}",
+                     photo.name, degrees * 111, cause_of_distance(stated, middle));
 }
 
 Crs grid_crs(const std::string& text) {
@@ -104,10 +121,15 @@ PhotoPriors photo_priors(const Photos& photos, const std::string& crs, const Pri
   std::optional<CrsTransform> to_grid;
   double unit = 1;
   const HeightSource heights = height_source(photos);
+  const auto middle = middle_of_positions(photos);
   for (std::size_t i = 0; i < photos.photos.size(); ++i) {
     const importers::PhotoMetadata& m = photos.photos[i].metadata;
     if (!m.position) {
       add_without_position(out, i, m, accuracy);
+      continue;
+    }
+    if (std::string refusal = refusal_of_position(photos.photos[i], *middle); !refusal.empty()) {
+      out.warnings.push_back(std::move(refusal));
       continue;
     }
     if (!to_grid) {

@@ -12,6 +12,7 @@ struct PhotoPriors {
   std::vector<pipeline::ObservedAttitude> attitudes = {};
   std::vector<pipeline::ObservedUp> ups = {};          ///< of pictures with a gimbal, but without a position
   std::vector<pipeline::ObservedHeight> heights = {};  ///< of these, above take-off
+  std::vector<std::string> warnings = {};              ///< positions that are left out, by image
 };
 
 /// Standard deviations of what cameras write.
@@ -24,9 +25,10 @@ struct PriorAccuracy {
 };
 
 /// Converts positions and gimbal angles to observations.
-/// - Heights are those above take-off plus the mean altitude of the take-off, else the altitudes. Both have
+/// - Heights are those above take-off plus the median altitude of the take-off, else the altitudes. Both have
 ///   one bias for all images.
-/// - `crs` empty: the UTM zone of the first position. Yaw is turned by the meridian convergence.
+/// - A position more than a degree from the median of all is left out.
+/// - `crs` empty: the UTM zone of the first position that is used. Yaw is turned by the meridian convergence.
 /// - Pictures without a position give the vertical by their gimbals and heights above take-off.
 /// - EXIF orientations that turn the picture turn the attitude, too; mirrored pictures give none.
 /// Throws Error{usage} for a CRS in degrees or on another body than Earth.

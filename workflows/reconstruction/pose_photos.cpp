@@ -130,6 +130,12 @@ PosedPhotos place_poses(const PosePhotosRequest& request, const Photos& photos,
   const pipeline::CalibratedAdjustment calibrated = calibrate(out.scene, matches.lenses, callbacks);
   out.ladder = calibrated.steps;
   for (const pipeline::LadderStep& step : calibrated.steps)
+    if (step.contradicts)
+      out.messages.push_back(fmt::format(
+          "lens {}: {} is {:.6g} by the images, but {:.6g} by their metadata, which are not used; "
+          "check that EXIF has the values of this lens",
+          step.lens + 1, step.parameter, step.value, step.prior_value));
+  for (const pipeline::LadderStep& step : calibrated.steps)
     if (!step.admitted)
       out.messages.push_back(fmt::format("lens {}: {} stays at {:.6g}: {}", step.lens + 1, step.parameter,
                                          step.value, step.reason));

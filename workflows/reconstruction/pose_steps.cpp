@@ -31,8 +31,9 @@ std::string key_of_matches(const Photos& photos, const PhotoFeatures& found,
 
 // Each layout serves both directions; `value` is const when it is written.
 constexpr auto kLadderStep = [](auto& io, auto& step) {
-  io(step.lens, step.parameter, step.admitted, step.value, step.sd, step.prior_sd, step.correlation,
-     step.correlated_with, step.left_out_before, step.left_out_after, step.reason);
+  io(step.lens, step.parameter, step.admitted, step.value, step.sd, step.prior_value, step.prior_sd,
+     step.contradicts, step.correlation, step.correlated_with, step.left_out_before, step.left_out_after,
+     step.reason);
 };
 
 constexpr auto kControl = [](auto& io, auto& point) {
@@ -65,7 +66,7 @@ PoseSteps pose_steps(const PosePhotosRequest& request, const Photos& photos, con
                      const std::vector<pipeline::ImageToMatch>& images, const pipeline::KeptResults& kept) {
   PoseSteps steps{.matches = {.name = "match_images", .item = "all", .version = 2, .depends_on = ""},
                   .solved = {.name = "solve_poses", .item = "all", .version = 4, .depends_on = ""},
-                  .poses = {.name = "georeference", .item = "all", .version = 2, .depends_on = ""}};
+                  .poses = {.name = "georeference", .item = "all", .version = 3, .depends_on = ""}};
   if (!kept.enabled()) return steps;
   steps.matches.depends_on = key_of_matches(photos, found, images);
   steps.solved.depends_on = steps.matches.fingerprint();

@@ -57,19 +57,25 @@ double median_position_sd(const pipeline::Reconstruction& scene) {
   return all[all.size() / 2];
 }
 
+std::string height_text(const pipeline::ControlResult& point) {
+  return std::isnan(point.error.z()) ? "       -" : fmt::format("{:8.3f}", point.error.z());
+}
+
 std::string control_text(const PosedPhotos& posed) {
   std::string text;
   for (const bool check : {false, true}) {
     const ControlFigures figures = control_figures(posed.control, check);
     const auto all = std::ranges::count(posed.control, check, &pipeline::ControlResult::check);
     if (all == 0) continue;
-    text += fmt::format("  {} of {} {} points: RMS {:.3f} m in plan, {:.3f} m in height\n", figures.used, all,
-                        check ? "check" : "control", figures.plan(), figures.rms.z());
+    text += fmt::format("  {} of {} {} points", figures.used, all, check ? "check" : "control");
+    text += figures.used > 0 ? fmt::format(": RMS {} in plan, {} in height\n", metres(figures.plan()),
+                                           metres(figures.rms.z()))
+                             : " used\n";
   }
   for (const pipeline::ControlResult& point : posed.control) {
     text += fmt::format("    {:<7} {:<12}", point.check ? "check" : "control", point.name);
-    text += point.position ? fmt::format(" {:8.3f} {:8.3f} {:8.3f} m, marks {:.2f} px", point.error.x(),
-                                         point.error.y(), point.error.z(), point.mark_rms)
+    text += point.position ? fmt::format(" {:8.3f} {:8.3f} {} m, marks {:.2f} px", point.error.x(),
+                                         point.error.y(), height_text(point), point.mark_rms)
                            : " no position";
     text += point.check || point.used ? "\n" : ", not used\n";
   }
@@ -87,6 +93,10 @@ std::optional<Eigen::Vector2d> residual_of(const pipeline::Reconstruction& scene
               Point<CameraFrame>{pipeline::pose_of_mark(scene, mark).inverse() * *tie.position});
   if (!seen) return std::nullopt;
   return *seen - mark.pixel;
+}
+
+std::string metres(double error) {
+  return std::isnan(error) ? "not surveyed" : fmt::format("{:.3f} m", error);
 }
 
 std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene) {
@@ -109,12 +119,17 @@ std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene) {
 
 ControlFigures control_figures(std::span<const pipeline::ControlResult> control, bool check) {
   ControlFigures out;
+  Eigen::Vector3d surveyed = Eigen::Vector3d::Zero();
   for (const pipeline::ControlResult& point : control) {
     if (point.check != check || !point.position || !(point.check || point.used)) continue;
-    out.rms += point.error.cwiseAbs2();
     ++out.used;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (std::isnan(point.error[axis])) continue;
+      out.rms[axis] += point.error[axis] * point.error[axis];
+      ++surveyed[axis];
+    }
   }
-  if (out.used > 0) out.rms = (out.rms / double(out.used)).cwiseSqrt();
+  out.rms = (out.rms.array() / surveyed.array()).sqrt();  // NaN where nothing was surveyed
   return out;
 }
 
@@ -124,7 +139,7 @@ std::string pose_summary(const PosedPhotos& posed, const std::vector<exporters::
     squares += 2 * double(point.marks.size()) * point.error * point.error;
     marks += double(point.marks.size());
   }
-  std::string text = fmt::format("{} of {} images posed", posed.posed, posed.scene.images.size());
+  std::string text = fmt::format("{} of {} images posed", posed.posed, posed.posed + posed.failures.size());
   if (posed.components.size() > 1)
     text += fmt::format("; the images form {} groups without common points: {}", posed.components.size(),
                         fmt::join(posed.components, ", "));

@@ -28,13 +28,16 @@ std::vector<PoseFigures> pose_figures(const pipeline::Reconstruction& scene);
 /// Root mean square errors of surveyed points, metres.
 struct ControlFigures {
   std::size_t used = 0;
-  Eigen::Vector3d rms = Eigen::Vector3d::Zero();  ///< easting, northing, height
+  Eigen::Vector3d rms = Eigen::Vector3d::Zero();  ///< easting, northing, height; of those surveyed
 
   double plan() const { return rms.head<2>().norm(); }
 };
 
 /// Returns the figures of the control points that are used, or of the check points that have a position.
 ControlFigures control_figures(std::span<const pipeline::ControlResult> control, bool check);
+
+/// Returns a root mean square error as text; "not surveyed" for NaN.
+std::string metres(double error);
 
 /// Returns the result as text for people: images, residuals, lenses, surveyed points, frame, failures.
 std::string pose_summary(const PosedPhotos& posed, const std::vector<exporters::SparsePoint>& points);

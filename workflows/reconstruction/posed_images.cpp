@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "core/error.hpp"
 #include "exporters/cameras/camera_file.hpp"
@@ -39,6 +40,8 @@ Crs map_crs(const PosedImagesRequest& request, const std::vector<ImageInfo>& ima
 PosedImages read_posed_images(const PosedImagesRequest& request, const Callbacks& callbacks) {
   importers::ImageListing listing{.files = request.images, .cameras = request.cameras};
   listing.import.crs = request.crs;
+  listing.import.camera_crs = request.tie.camera_crs;
+  listing.import.control_points = request.tie.control_points;
   const importers::ListedImages listed = importers::list_images(listing);
   for (const std::string& warning : listed.warnings) callbacks.warning(warning);
   std::vector<ImageInfo> posed;
@@ -55,7 +58,8 @@ PosedImages read_posed_images(const PosedImagesRequest& request, const Callbacks
                 request.cameras,
                 dropped.empty() ? "add images that overlap"
                                 : fmt::format("no pose or not readable: {}", some_names(dropped)));
-  return {.crs = map_crs(request, posed), .images = importers::image_set(posed)};
+  return {
+      .crs = map_crs(request, posed), .images = importers::image_set(posed), .unposed = std::move(dropped)};
 }
 
 std::string text_of_crs(const Crs& crs) {

@@ -13,6 +13,14 @@ struct PosedImages {
   Crs crs = Crs::local();                    ///< projected or local
   ImageSet images = {};                      ///< each has `view`; sorted by name
   std::vector<Eigen::Vector3d> points = {};  ///< tie points in the grid frame, metres; empty: unknown
+  std::vector<std::string> unposed = {};     ///< names of images without a pose, or that cannot be read
+};
+
+/// What ties a frame that a camera file leaves arbitrary to the map
+/// (docs/how_to/tie_cameras_to_the_map.md): one of both, or neither.
+struct CameraTie {
+  std::string camera_crs = {};      ///< CRS of the positions, if the file names none
+  std::string control_points = {};  ///< table of positions of cameras or points
 };
 
 /// Images and the file that gives their poses.
@@ -20,6 +28,7 @@ struct PosedImagesRequest {
   std::vector<std::string> images = {};  ///< files, patterns or folders; empty: those the camera file names
   std::string cameras = {};  ///< camera file in any of the formats (docs/reference/camera_formats.md)
   std::string crs = {};      ///< of the map; empty: that of the camera file
+  CameraTie tie = {};
 };
 
 /// Reads images with poses. Images without a pose and files that cannot be read are dropped with a warning.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "core/error.hpp"
 #include "importers/cameras/camera_set.hpp"
@@ -123,6 +124,17 @@ Photo read_photo(const importers::FoundImage& found) {
   return photo;
 }
 
+// Returns why a picture is no view of a camera; empty if it is.
+std::string refusal_of_picture(const importers::PhotoMetadata& m) {
+  if (m.is_orthophoto) return "it is an orthophoto (it has a georeference), not a picture";
+  if (const int o = m.orientation; o == 2 || o == 4 || o == 5 || o == 7)
+    return fmt::format(
+        "it is stored as a mirror image (EXIF orientation {}): write it upright, e.g. by `exiftran -a`, or "
+        "correct the orientation",
+        o);
+  return {};
+}
+
 std::vector<importers::FoundImage> thin_files(std::vector<importers::FoundImage> found,
                                               std::size_t max_images, const Callbacks& callbacks) {
   if (found.size() <= max_images) return found;
@@ -159,8 +171,8 @@ Photos read_photos(const PhotosRequest& request, const Callbacks& callbacks) {
        thin_files(importers::find_images(request.images, nullptr, ""), request.max_images, callbacks))
     try {
       Photo photo = read_photo(found);
-      if (photo.metadata.is_orthophoto) {
-        out.unused.push_back({found.name, "it is an orthophoto (it has a georeference), not a picture"});
+      if (std::string refusal = refusal_of_picture(photo.metadata); !refusal.empty()) {
+        out.unused.push_back({found.name, std::move(refusal)});
         continue;
       }
       out.photos.push_back(std::move(photo));

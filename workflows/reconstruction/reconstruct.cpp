@@ -39,10 +39,14 @@ void check_request(const ReconstructRequest& request) {
   if (!request.cameras.empty() && !request.lens.empty())
     throw Error(ErrorCode::usage, "--lens and --cameras are both given, but poses come with their lens", "",
                 "leave out --lens");
-  if (!request.cameras.empty() && !request.control.empty())
-    throw Error(ErrorCode::usage,
-                "--control and --cameras are both given, but control points serve to solve the poses", "",
-                "leave out --cameras; or tie its poses to the map (docs/how_to/tie_cameras_to_the_map.md)");
+  if (!request.cameras.empty() && !request.marks.empty())
+    throw Error(ErrorCode::usage, "--marks and --cameras are both given, but marks serve to solve the poses",
+                "",
+                "leave out --cameras; or tie its poses to the map by --control TABLE "
+                "(docs/how_to/tie_cameras_to_the_map.md)");
+  if (request.cameras.empty() && !request.camera_crs.empty())
+    throw Error(ErrorCode::usage, "--camera-crs is given, but no camera file whose positions are in it", "",
+                "pass --cameras FILE, or --crs for the map");
   if (!request.cameras.empty() && !request.altimeter.empty())
     throw Error(
         ErrorCode::usage,
@@ -215,9 +219,13 @@ PosesInHand solved_poses(const ReconstructRequest& request, const Callbacks& cal
 }
 
 PosesInHand given_poses(const ReconstructRequest& request, const Callbacks& callbacks) {
-  PosesInHand out{.images = read_posed_images(
-                      {.images = request.images, .cameras = request.cameras, .crs = request.crs}, callbacks)};
+  CameraTie tie = request;
+  tie.control_points = request.control;
+  PosesInHand out{
+      .images = read_posed_images(
+          {.images = request.images, .cameras = request.cameras, .crs = request.crs, .tie = tie}, callbacks)};
   out.posed = out.images.images.size();
+  out.failed = out.images.unposed.size();
   out.crs = out.images.crs.id();
   out.report = report_of_cameras(out.images, 0);
   const fs::path file = fs::path(request.folder) / "cameras.json";

@@ -7,6 +7,7 @@
 #include "workflows/callbacks.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/reconstruction/pose_photos.hpp"
+#include "workflows/reconstruction/posed_images.hpp"
 namespace waymark::workflows {
 
 /// Last product of a reconstruction; each needs those before it.
@@ -17,9 +18,9 @@ enum class ReconstructUntil {
 };
 
 /// Images and what to make of them.
-struct ReconstructRequest : PosePhotosRequest {
+struct ReconstructRequest : PosePhotosRequest, CameraTie {
   std::string cameras = {};  ///< camera file with the poses, which names the images if none are given; empty:
-                             ///< they are solved
+                             ///< they are solved; `control` then ties them to the map
   double cell = 0;           ///< of the DEM, metres; 0: twice the median ground sample distance
   ReconstructUntil until = ReconstructUntil::ortho;
   std::string map = {};           ///< GeoPackage of landmarks; empty: none

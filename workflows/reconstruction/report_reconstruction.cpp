@@ -107,7 +107,7 @@ exporters::ReconstructionReport report_of_poses(const PosedPhotos& posed) {
     const ControlFigures control = control_figures(posed.control, check);
     if (control.used > 0)
       report.facts.emplace_back(
-          fmt::format("{:.3f} / {:.3f} m", control.plan(), control.rms.z()),
+          fmt::format("{} / {}", metres(control.plan()), metres(control.rms.z())),
           fmt::format("{} {} points, RMS in plan / height", control.used, check ? "check" : "control"));
   }
   return report;

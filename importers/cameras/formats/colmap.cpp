@@ -224,10 +224,15 @@ CameraFile read_colmap(const CameraSource& source) {
 bool recognises(const CameraSource& source) {
   std::error_code ignored;
   const fs::path path(source.path);
-  if (fs::is_directory(path, ignored))
-    return (has(path, "cameras.bin") && has(path, "images.bin")) ||
-           (has(path, "cameras.txt") && has(path, "images.txt"));
-  return path.filename() == "cameras.bin" || path.filename() == "images.bin" ||
+  const auto is_model = [](const fs::path& folder) {
+    return (has(folder, "cameras.bin") && has(folder, "images.bin")) ||
+           (has(folder, "cameras.txt") && has(folder, "images.txt"));
+  };
+  if (fs::is_directory(path, ignored)) return is_model(path);
+  // Either text may stand without its comment.
+  const std::string name = path.filename().string();
+  if ((name == "cameras.txt" || name == "images.txt") && is_model(path.parent_path())) return true;
+  return name == "cameras.bin" || name == "images.bin" ||
          source.head.starts_with("# Camera list with one line of data per camera") ||
          source.head.starts_with("# Image list with two lines of data per image");
 }

@@ -17,8 +17,11 @@ namespace {
 
 using Kind = CommonGeometryError::Kind;
 
-constexpr std::array<double, 3> kSteps{0.02, 0.005, 0.00125};  // of the logarithm
-constexpr std::array<double, 3> kBlur{3, 1, 0};  // added to the gates of each grid, ground sample distances
+// Gates three ground sample distances wider find as much again with a third more focal length: steps are as
+// fine as narrow gates need.
+constexpr std::array<double, 3> kSteps{0.01, 0.0025, 0.00125};  // of the logarithm
+// Added to the gates of each grid, ground sample distances.
+constexpr std::array<double, 3> kBlur{1, 0.25, 0};
 
 ImageView corrected(ImageView image, Kind kind, double amount) {
   if (!image.view) return image;

@@ -43,8 +43,8 @@ CorrectedGeometry correct_geometry(const std::vector<Observation>& observations,
                                    const Crs& crs, CommonGeometryError::Kind kind, double amount);
 
 /// Returns for each kind of error the amount with which most objects are found again in other images, the
-/// best first. The logarithm of a focal length or distance is searched on three grids, each four times finer,
-/// down to steps of 0.00125; errors of single poses limit the amount to some percent. Images at one distance
+/// best first. The logarithm of a focal length or distance is searched on three grids, with steps from 0.01
+/// down to 0.00125; errors of single poses limit the amount to some percent. Images at one distance
 /// from level ground do not separate a focal length from a height: with both as many are found again.
 /// Deterministic.
 std::vector<CommonGeometryError> find_common_errors(const std::vector<Observation>& observations,

@@ -37,7 +37,7 @@ struct ControlResult {
   bool check = false, used = false;
   std::optional<Eigen::Vector3d> position = {};     ///< estimated; of a check point by its marks alone
   std::optional<Eigen::Matrix3d> covariance = {};   ///< of `position`
-  Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< estimated - surveyed
+  Eigen::Vector3d error = Eigen::Vector3d::Zero();  ///< estimated - surveyed; NaN where nothing was surveyed
   double mark_rms = 0;                              ///< residuals of its marks, pixels
   double statistic = 0;                             ///< of the blunder test, standard deviations
   std::string note = {};                            ///< why it is not used, and what to do

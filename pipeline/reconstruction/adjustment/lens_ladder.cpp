@@ -81,9 +81,13 @@ class Ladder {
     }
   }
 
+  std::size_t prior_index(std::size_t lens, const std::string& name) const {
+    const auto found = std::ranges::find_if(
+        seen_.lenses, [&](const LensPrior& p) { return p.lens == lens && p.parameter == name; });
+    return static_cast<std::size_t>(found - seen_.lenses.begin());
+  }
   const LensPrior& prior(std::size_t lens, const std::string& name) const {
-    return *std::ranges::find_if(seen_.lenses,
-                                 [&](const LensPrior& p) { return p.lens == lens && p.parameter == name; });
+    return seen_.lenses[prior_index(lens, name)];
   }
 
   // Returns whether a term was refused although another one entered after it: the refusal may no longer hold.
@@ -133,15 +137,34 @@ class Ladder {
       free = already;
       return false;
     }
+    drop_contradicted_priors(trial, result, lens);
     best_ = std::move(trial);
     residual_ = after;
     return true;
+  }
+
+  // Priors that the images contradict would still pull at them. Those of terms that entered earlier are
+  // judged again, since a later one can move them.
+  void drop_contradicted_priors(const Reconstruction& trial, const AdjustmentResult& result,
+                                std::size_t lens) {
+    const AdjustedLens& adjusted = trial.lenses[lens];
+    for (LadderStep& step : out_.steps) {
+      if (step.lens != lens || !step.admitted) continue;
+      const auto at = std::ranges::find(adjusted.parameters, step.parameter) - adjusted.parameters.begin();
+      const double value = result.lenses[lens][static_cast<std::size_t>(at)].value;
+      const double sd = std::sqrt(adjusted.covariance(at, at));
+      LensPrior& before = seen_.lenses[prior_index(lens, step.parameter)];
+      if (deviation_from_prior(value, sd, before) <= limits_.max_deviation) continue;
+      before.sd = std::max(before.sd, std::abs(value - before.value));
+      step.contradicts = true;
+    }
   }
 
   LadderStep judge(const Reconstruction& trial, const AdjustmentResult& result, std::size_t lens,
                    const std::string& name, const std::vector<std::string>& already, double after) const {
     LadderStep step{.lens = lens,
                     .parameter = name,
+                    .prior_value = prior(lens, name).value,
                     .prior_sd = prior(lens, name).sd,
                     .left_out_before = residual_,
                     .left_out_after = after};

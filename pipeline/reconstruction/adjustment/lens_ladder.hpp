@@ -11,9 +11,10 @@ struct LadderStep {
   std::size_t lens = 0;
   std::string parameter = {};
   bool admitted = false;
-  double value = 0, sd = 0, prior_sd = 0;
-  double correlation = 0;                          ///< largest, to a parameter already in
-  std::string correlated_with = {};                ///< that parameter
+  double value = 0, sd = 0, prior_value = 0, prior_sd = 0;
+  bool contradicts = false;          ///< admitted, although far from its prior: that was dropped
+  double correlation = 0;            ///< largest, to a parameter already in
+  std::string correlated_with = {};  ///< that parameter
   double left_out_before = 0, left_out_after = 0;  ///< residuals of left-out points, standard deviations
   std::string reason = {};                         ///< why it stays at its prior value; empty if admitted
 };
@@ -38,6 +39,7 @@ struct CalibratedAdjustment {
 /// Adjusts, with self-calibration: f, k1, k2, (cx, cy), (p1, p2) in this order; no p1, p2 for a fisheye.
 /// - A group enters only if the data determine it and do not contradict what is known of it (LadderOptions).
 /// - The residuals of left-out tie points must fall.
+/// - The prior of an admitted parameter that it contradicts is widened to their difference.
 /// Otherwise its parameters keep their values. `options.free_lens_parameters` are free from the start.
 CalibratedAdjustment adjust_with_ladder(Reconstruction& scene, const Observations& observations,
                                         AdjustmentOptions options = {}, const LadderOptions& ladder = {});

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <vector>
 
 #include "pipeline/reconstruction/adjustment/outliers.hpp"
 #include "pipeline/reconstruction/adjustment/solve_network.hpp"
@@ -24,6 +27,33 @@ double mark_rms(const Network& network, const ControlPoint& point, std::size_t i
     count += 2;
   }
   return count > 0 ? std::sqrt(squares / count) : 0;
+}
+
+// Position less that surveyed; the height is NaN where none was surveyed.
+Eigen::Vector3d error_of(const Eigen::Vector3d& position, const ControlPoint& point) {
+  Eigen::Vector3d error = position - point.position;
+  for (int axis = 0; axis < 3; ++axis)
+    if (!std::isfinite(point.sd[axis])) error[axis] = std::numeric_limits<double>::quiet_NaN();
+  return error;
+}
+
+// Statistic of the test of a point's coordinates that were surveyed (Wilson & Hilferty 1931).
+double test_of(const Eigen::Vector3d& error, const Eigen::Matrix3d& covariance, const Eigen::Vector3d& sd) {
+  std::vector<int> known;
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::isfinite(sd[axis])) known.push_back(axis);
+  if (known.empty()) return 0;
+  const Eigen::VectorXd misses = error(known), variances = sd.array().square().matrix()(known);
+  Eigen::MatrixXd expected = covariance(known, known);
+  expected += variances.asDiagonal();
+  const double count = static_cast<double>(known.size()), spread = 2 / (9 * count);
+  const double squares = misses.dot(expected.inverse() * misses);
+  return std::max(0.0, (std::cbrt(squares / count) - (1 - spread)) / std::sqrt(spread));
+}
+
+// Length of the coordinates of an error that are known.
+double known_length(const Eigen::Vector3d& error) {
+  return std::sqrt(error.array().isNaN().select(0, error.array()).square().sum());
 }
 
 // Network of one more point, which sees the cameras but does not move them.
@@ -66,16 +96,12 @@ void report_apart(const Reconstruction& scene, const ControlPoint& point, std::s
     return;
   }
   out.position = one->blocks.back().value + one->origin;
-  out.error = *out.position - point.position;
+  out.error = error_of(*out.position, point);
   out.mark_rms = mark_rms(*one, point, index);
   if (!covariance.determined) return;
   if (const auto found = point_covariance(*one, one->blocks.size() - 1, covariance.cameras)) {
     out.covariance = *found * sigma0 * sigma0;
-    const Eigen::Matrix3d expected =
-        *out.covariance + Eigen::Matrix3d(point.sd.array().square().matrix().asDiagonal());
-    const double squares = out.error.dot(expected.inverse() * out.error);
-    const double spread = 2.0 / 27;
-    out.statistic = std::max(0.0, (std::cbrt(squares / 3) - (1 - spread)) / std::sqrt(spread));
+    out.statistic = test_of(out.error, *out.covariance, point.sd);
   }
 }
 
@@ -92,7 +118,7 @@ std::vector<ControlResult> report_control(const Reconstruction& scene, const Obs
     if (const auto block = built.control_blocks[i]) {
       one.used = true;
       one.position = network.blocks[*block].value + network.origin;
-      one.error = *one.position - point.position;
+      one.error = error_of(*one.position, point);
       one.mark_rms = mark_rms(network, point, i);
       if (covariance.determined && covariance.points[*block])
         one.covariance = *covariance.points[*block] * sigma0 * sigma0;
@@ -105,7 +131,7 @@ std::vector<ControlResult> report_control(const Reconstruction& scene, const Obs
         one.note = fmt::format(
             "left out: {:.3g} m from where its marks place it; check its coordinates, its "
             "name and its marks",
-            one.error.norm());
+            known_length(one.error));
     }
     all.push_back(one);
   }

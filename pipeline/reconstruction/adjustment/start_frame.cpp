@@ -29,6 +29,31 @@ bool in_component(const Reconstruction& scene, std::size_t image, std::size_t co
   return scene.images[image].world_from_camera && scene.images[image].component == component;
 }
 
+// Largest distance between positions of the map. Those ten times as far from their median as half of them
+// are, are blunders.
+double extent_of(const std::vector<NamedPair>& pairs) {
+  constexpr double kFar = 10;
+  if (pairs.empty()) return 0;
+  const auto half = static_cast<std::ptrdiff_t>(pairs.size() / 2);
+  Eigen::Vector3d middle;
+  std::vector<double> values(pairs.size());
+  for (int axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = pairs[i].pair.map[axis];
+    std::ranges::nth_element(values, values.begin() + half);
+    middle[axis] = values[pairs.size() / 2];
+  }
+  const auto distance = [&](const NamedPair& p) { return (p.pair.map - middle).norm(); };
+  std::ranges::transform(pairs, values.begin(), distance);
+  std::ranges::nth_element(values, values.begin() + half);
+  const double limit = kFar * values[pairs.size() / 2];
+  double extent = 0;
+  for (const NamedPair& a : pairs)
+    for (const NamedPair& b : pairs)
+      if (distance(a) <= limit && distance(b) <= limit)
+        extent = std::max(extent, (a.pair.map - b.pair.map).norm());
+  return extent;
+}
+
 std::vector<NamedPair> pairs_of(const Reconstruction& scene, const Observations& seen,
                                 std::size_t component) {
   std::vector<NamedPair> out;
@@ -46,9 +71,7 @@ std::vector<NamedPair> pairs_of(const Reconstruction& scene, const Observations&
                       largest_sd_of(seen_at.sd)}});
   // A free frame is bent by some thousandths of its extent, which the adjustment will straighten.
   constexpr double kBend = 0.003;
-  double extent = 0;
-  for (const NamedPair& a : out)
-    for (const NamedPair& b : out) extent = std::max(extent, (a.pair.map - b.pair.map).norm());
+  const double extent = extent_of(out);
   for (NamedPair& p : out) p.pair.sd = std::max(std::hypot(p.pair.sd, kBend * extent), 1e-9);
   return out;
 }
@@ -118,6 +141,13 @@ std::optional<Similarity> by_surface(const Reconstruction& scene, const Observat
   return best;
 }
 
+std::string without_height(const Observations& seen) {
+  const auto flat = [](const auto& o) { return !std::isfinite(o.sd.z()); };
+  const auto count = std::ranges::count_if(seen.positions, flat) +
+                     std::ranges::count_if(seen.control, [&](const auto& p) { return !p.check && flat(p); });
+  return count > 0 ? fmt::format(" (and {} without a height)", count) : "";
+}
+
 void name_left_out(const std::vector<NamedPair>& pairs, const RobustSimilarity& found,
                    std::vector<std::string>& messages) {
   for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -152,9 +182,10 @@ StartFrame start_frame(const Reconstruction& scene, const Observations& seen, st
   const char* remedy = up ? "two that are not above each other are enough, since the vertical is known"
                           : "add some, or the direction of gravity";
   if (pairs.size() < 3)
-    out.messages.push_back(fmt::format(
-        "the frame is arbitrary: {} control points and positions of cameras are known, and 3 are needed; {}",
-        pairs.size(), remedy));
+    out.messages.push_back(
+        fmt::format("the frame is arbitrary: {} control points and positions of cameras are known{}, and 3 "
+                    "are needed; {}",
+                    pairs.size(), without_height(seen), remedy));
   else
     out.messages.push_back(fmt::format(
         "the frame is arbitrary: the {} control points and positions of cameras lie within {:.3g} m of one "

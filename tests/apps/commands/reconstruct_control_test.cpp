@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -202,11 +204,56 @@ TEST_F(ReconstructWithControl, PosesAndControlExcludeEachOther) {
   const Outcome both = run("local\n", {"--cameras", (surveyed_flight() / "truth/cameras.json").string()});
   EXPECT_EQ(both.code, 2);
   EXPECT_THAT(both.err, HasSubstr("--lens and --cameras are both given"));
-  const Outcome control = waymark({"reconstruct", (surveyed_flight() / "images").string(), "--cameras",
-                                   (surveyed_flight() / "truth/cameras.json").string(), "--control",
-                                   folder_ / "gcp_list.txt", "-o", folder_ / "out"});
-  EXPECT_EQ(control.code, 2);
-  EXPECT_THAT(control.err, HasSubstr("--control and --cameras are both given"));
+  const Outcome marks = waymark({"reconstruct", (surveyed_flight() / "images").string(), "--cameras",
+                                 (surveyed_flight() / "truth/cameras.json").string(), "--control",
+                                 folder_ / "gcp_list.txt", "--marks", "marks.csv", "-o", folder_ / "out"});
+  EXPECT_EQ(marks.code, 2);
+  EXPECT_THAT(marks.err, HasSubstr("--marks and --cameras are both given"));
+}
+
+// The folder colmap of a reconstruction is read again: as it is, by its CRS, and tied by its cameras.
+TEST_F(ReconstructWithControl, ColmapsTextComesBack) {
+  ASSERT_EQ(run(gcp_list(surveyed_points())).code, 0);
+  const json made = json::parse(text_of(folder_ / "out/cameras.json"));
+  std::string table = "image,x,y,z\n";
+  for (const json& image : made["images"])
+    table += fmt::format("{},{},{},{}\n", std::string(image["name"]), double(image["centre"][0]) + 100,
+                         double(image["centre"][1]), double(image["centre"][2]));
+  write_text(folder_ / "centres.csv", table);
+  const auto again = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"reconstruct", (surveyed_flight() / "images").string(),
+                                   "--until",     "poses",
+                                   "-o",          folder_ / "again",
+                                   "--crs",       "local"};
+    words.insert(words.end(), more.begin(), more.end());
+    return waymark(words);
+  };
+  const auto largest_difference = [&](double east) {
+    const json found = json::parse(text_of(folder_ / "again/cameras.json"));
+    double largest = 0;
+    for (std::size_t i = 0; i < made["images"].size(); ++i)
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        largest =
+            std::max(largest, std::abs(double(found["images"][i]["centre"][axis]) -
+                                       double(made["images"][i]["centre"][axis]) - (axis == 0 ? east : 0)));
+    return largest;
+  };
+  const std::string colmap = folder_ / "out/colmap";
+  const Outcome untied = again({"--cameras", colmap});
+  EXPECT_EQ(untied.code, 1);
+  EXPECT_THAT(untied.err, HasSubstr("has no position, direction or scale in the map"));
+  for (const char* file : {"", "/images.txt"}) {
+    const Outcome by_crs = again({"--cameras", colmap + file, "--camera-crs", "local"});
+    ASSERT_EQ(by_crs.code, 0) << by_crs.err;
+    EXPECT_LT(largest_difference(0), 1e-6);
+  }
+  const Outcome by_table = again({"--cameras", colmap, "--control", folder_ / "centres.csv"});
+  ASSERT_EQ(by_table.code, 0) << by_table.err;
+  EXPECT_LT(largest_difference(100), 1e-3);
+  const Outcome unused =
+      again({"--cameras", folder_ / "out/cameras.json", "--control", folder_ / "centres.csv"});
+  EXPECT_THAT(unused.err, HasSubstr("are not used: the camera file states the frame"));
+  EXPECT_LT(largest_difference(0), 1e-6);
 }
 
 }  // namespace

@@ -72,7 +72,7 @@ TEST_F(ReconstructPhotos, BadImagesAmongGoodOnesAreNamedAndTheRestGoesOn) {
   write_text(folder_ / "images/notes.txt", "flown at noon");
   const Outcome mixed = run_with_lens();
   EXPECT_EQ(mixed.code, 3) << mixed.err;
-  EXPECT_THAT(mixed.err, HasSubstr("6 of 10 images posed"));
+  EXPECT_THAT(mixed.err, HasSubstr("6 of 11 images posed"));
   for (const char* name :
        {"black.jpg", "mirrored.jpg", "stranger.jpg", "smaller_stranger.jpg", "damaged.jpg"})
     EXPECT_THAT(mixed.err, HasSubstr("not posed: " + std::string(name)));
@@ -196,6 +196,25 @@ TEST_F(ReconstructPhotos, PixelsCountAsStoredWhateverTheOrientation) {
   const Outcome turned = run_with_lens();
   EXPECT_EQ(turned.code, 0) << turned.err;
   EXPECT_THAT(turned.err, HasSubstr("6 of 6 images posed"));
+}
+
+TEST_F(ReconstructPhotos, MirroredPicturesAreNamed) {
+  for (std::size_t i = 0; i < 6; ++i)
+    write_photo(image(names_[i]), pictures_[i], {.orientation = i == 3 ? 2 : 1});
+  const Outcome mirrored = run_with_lens();
+  EXPECT_EQ(mirrored.code, 3);
+  EXPECT_THAT(mirrored.err,
+              AllOf(HasSubstr("5 of 6 images posed"),
+                    HasSubstr(names_[3] + ": it is stored as a mirror image (EXIF orientation 2)")));
+}
+
+TEST_F(ReconstructPhotos, OnePositionInTheWrongHemisphereIsNamed) {
+  positions_[0].lon = -*positions_[0].lon;
+  write_good(6, true);
+  const Outcome made = run_with_lens();
+  EXPECT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("frame: EPSG:32632"), HasSubstr("the GPS position of " + names_[0]),
+                              HasSubstr("wrong hemisphere of longitude")));
 }
 
 TEST_F(ReconstructPhotos, GpsGivesTheFrame) {

@@ -75,6 +75,16 @@ TEST_F(ReconstructCommand, OneViewIsTooFew) {
   EXPECT_THAT(one.err, HasSubstr("heights need two images with poses, but 1 of 6 images has one"));
 }
 
+TEST_F(ReconstructCommand, AnImageWithoutPoseIsCounted) {
+  const Outcome made =
+      run(cameras([](json& file) { file["images"][2].erase("centre"), file["images"][2].erase("rotation"); }),
+          {"--until", "poses", "--format", "json"});
+  EXPECT_EQ(made.code, 3);
+  EXPECT_EQ(json::parse(made.out)["failed"], 1);
+  EXPECT_THAT(made.err,
+              HasSubstr(std::string(json::parse(text_of(folder_ / "cameras.json"))["images"][2]["name"])));
+}
+
 TEST_F(ReconstructCommand, ImagesWithoutOverlapShareNoTerrain) {
   const Outcome apart = run(cameras([](json& file) {
     double x = 0;

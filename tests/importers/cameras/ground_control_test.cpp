@@ -47,6 +47,7 @@ TEST(GroundControl, ReadsOpenDroneMapsList) {
   EXPECT_EQ(found.points[1].marks.size(), 2u);
   EXPECT_EQ(read_gcp_list(written("+proj=utm +zone=10 +ellps=WGS84\n1 2 3 4 5 a.jpg\n")).crs,
             "+proj=utm +zone=10 +ellps=WGS84");
+  EXPECT_EQ(read_gcp_list(written("wgs84 utm 7n\n1 2 3 4 5 a.jpg\n")).crs, "EPSG:32607");
 }
 
 TEST(GroundControl, RefusesWithTheLine) {
@@ -84,6 +85,24 @@ TEST(ControlLayer, ReadsPointsAndMarks) {
   EXPECT_TRUE(found.points[1].check);
   EXPECT_TRUE(std::isnan(found.points[1].position.z()));
   EXPECT_EQ(found.points[1].marks[0].sd, 2);
+}
+
+// Layers of points in the plane have their heights in a column; a third coordinate comes first.
+TEST(ControlLayer, HeightsStandInAColumnOrInTheGeometry) {
+  const auto path = std::filesystem::path(::testing::TempDir()) / "control_flat.geojson";
+  std::ofstream(path) << R"({"type": "FeatureCollection", "features": [
+{"type": "Feature", "properties": {"name": "A", "height": 412.5},
+ "geometry": {"type": "Point", "coordinates": [9, 48]}},
+{"type": "Feature", "properties": {"name": "B", "height": 1},
+ "geometry": {"type": "Point", "coordinates": [9, 48, 400]}},
+{"type": "Feature", "properties": {"name": "C", "height": null},
+ "geometry": {"type": "Point", "coordinates": [9, 48]}}]})";
+  const GroundControl found =
+      read_control_layer(path.string(), table("marks", "point,image,column,row\nA,a.jpg,1,2\n"));
+  ASSERT_EQ(found.points.size(), 3u);
+  EXPECT_EQ(found.points[0].position.z(), 412.5);
+  EXPECT_EQ(found.points[1].position.z(), 400);
+  EXPECT_TRUE(std::isnan(found.points[2].position.z()));
 }
 
 TEST(ControlLayer, RefusesWithTheRow) {

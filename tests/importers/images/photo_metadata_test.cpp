@@ -48,6 +48,18 @@ TEST(PhotoMetadata, PlaneResolutionIsScaledToTheFile) {
   EXPECT_NEAR(m.focal, 2000, 1e-9);
 }
 
+// Programs that turn a picture by 90 degrees often leave the dimensions in EXIF.
+TEST(PhotoMetadata, TurnedPicturesKeepTheirFocalLength) {
+  const std::map<std::string, std::string> items{{"EXIF_FocalLength", "(8)"},
+                                                 {"EXIF_FocalPlaneXResolution", "(5000)"},
+                                                 {"EXIF_FocalPlaneResolutionUnit", "3"},
+                                                 {"EXIF_PixelXDimension", "4000"},
+                                                 {"EXIF_PixelYDimension", "3000"}};
+  EXPECT_NEAR(metadata_of(items, nullptr, 4000, 3000).focal, 4000, 1e-9);
+  EXPECT_NEAR(metadata_of(items, nullptr, 3000, 4000).focal, 4000, 1e-9);
+  EXPECT_NEAR(metadata_of(items, nullptr, 1500, 2000).focal, 2000, 1e-9);
+}
+
 TEST(PhotoMetadata, AFocalLengthThatCannotBeIsIgnored) {
   EXPECT_EQ(metadata_of({{"EXIF_FocalLengthIn35mmFilm", "0"}}).focal_source, FocalSource::none);
   EXPECT_EQ(metadata_of({{"EXIF_FocalLengthIn35mmFilm", "9000"}}).focal_source, FocalSource::none);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "tests/pipeline/reconstruction/made_scene.hpp"
 
@@ -12,6 +13,7 @@ namespace waymark::test {
 namespace {
 using namespace pipeline;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 const MadeSceneOptions kOptions{.seed = 8, .tilt = 0.1, .corner = {645000, 5123000, 400}};
@@ -105,6 +107,38 @@ TEST(Georeference, ABlunderIsNamed) {
   for (std::size_t i = 0; i < 6; ++i) EXPECT_EQ(found.adjustment.control[i].used, i != 1) << i;
   EXPECT_THAT(found.messages, Contains(HasSubstr("control point P01 is ")));
   EXPECT_LT(largest_chi2(made.start, made.truth), 21);
+}
+
+// What a frame bends grows with its extent, which a blunder must not enlarge.
+TEST(Georeference, ABlunderOfKilometresIsNamed) {
+  for (const double metres : {1e3, 2e4, 2e6}) {
+    MadeScene made = free_scene(kOptions);
+    Observations seen{.positions = made_positions(made.truth, 0.5, 3)};
+    seen.positions[4].position.z() += metres;
+    const Georeferenced found = georeference(made.start, seen);
+    EXPECT_TRUE(found.metric) << metres;
+    EXPECT_THAT(found.messages, ElementsAre(HasSubstr("position of image ")));
+    EXPECT_LT(largest_chi2(made.start, made.truth), 21) << metres;
+  }
+}
+
+TEST(Georeference, AHeightThatIsNotSurveyedHasNoError) {
+  MadeScene made = free_scene(kOptions);
+  Observations seen{.control = made_control(made, kOptions, 3, 3, 0.02)};
+  for (const std::size_t i : {1u, 4u, 7u})
+    seen.control[i].position.z() = 0, seen.control[i].sd.z() = std::numeric_limits<double>::infinity();
+  seen.control[4].check = seen.control[5].check = seen.control[7].check = true;
+  seen.control[7].position.x() += 50;
+  const Georeferenced found = georeference(made.start, seen);
+  EXPECT_TRUE(found.metric);
+  const auto& control = found.adjustment.control;
+  for (std::size_t i = 0; i < 9; ++i) {
+    EXPECT_EQ(std::isnan(control[i].error.z()), i == 1 || i == 4 || i == 7) << i;
+    EXPECT_LT(control[i].error.head<2>().norm(), i == 7 ? 51 : 0.3) << i;
+  }
+  EXPECT_TRUE(control[1].used);
+  EXPECT_LT(control[4].statistic, 4);
+  EXPECT_GT(control[7].statistic, 4);  // its two other coordinates are tested
 }
 
 TEST(Georeference, ASmallBlunderIsNamedByItsTest) {

@@ -113,6 +113,10 @@ TEST(LensLadder, StrongGeometryOverrulesAWrongPrior) {
   }
   const CalibratedAdjustment found = adjust_with_ladder(made.start, seen);
   EXPECT_TRUE(step_of(found, "f").admitted) << step_of(found, "f").reason;
+  EXPECT_TRUE(step_of(found, "f").contradicts);
+  EXPECT_EQ(step_of(found, "f").prior_value, 1150);
+  // The prior does not pull any more.
+  EXPECT_NEAR(std::ranges::find(found.priors, "f", &LensPrior::parameter)->sd, 150, 10);
   EXPECT_NEAR(made.start.lenses[0].camera.fx, 1000, 10);
 }
 
