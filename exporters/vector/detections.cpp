@@ -43,6 +43,12 @@ GroundEllipse on_ground(const PixelEllipse& outline, const Eigen::Vector2d& size
   return {std::sqrt(std::max(ground.major, 0.0)), std::sqrt(std::max(ground.minor, 0.0)), azimuth};
 }
 
+/// Returns metres per pixel in the direction of the light; the mean of both axes if it is unknown.
+double metres_along_light(const ImageDetections& found, const Eigen::Vector2d& size) {
+  if (!found.sun_angle) return std::sqrt(size.x() * size.y());
+  return std::hypot(size.x() * std::cos(found.sun_angle->value), size.y() * std::sin(found.sun_angle->value));
+}
+
 Eigen::Vector2d map_position(const Georeference& place, const PixelEllipse& outline) {
   return {place.x(outline.x), place.y(outline.y)};
 }
@@ -142,7 +148,8 @@ FeatureSet level_ground_features(const ImageDetections& found, const Detection& 
     set("orientation", ellipse.azimuth,
         std::min(std::numbers::pi / 4, diameter_sd / std::max(1e-9, ellipse.major - ellipse.minor)));
   if (one.shadow_reach && found.sun_elevation) {
-    const double rise = std::tan(found.sun_elevation->value * kRadiansPerDegree) * scale;
+    const double rise =
+        std::tan(found.sun_elevation->value * kRadiansPerDegree) * metres_along_light(found, *size);
     set("height", one.shadow_reach->value * rise, one.shadow_reach->sd * rise);
   }
   return features;

@@ -21,8 +21,10 @@ struct ImageDetections {
   std::optional<Meters> gsd;                 ///< of an image without georeference
   std::optional<Degrees> sun_elevation;      ///< needed for heights
   std::optional<Degrees> sun_azimuth;        ///< for the record, clockwise from map north
-  std::vector<FeatureSet> features = {};     ///< of each detection, if the detector measures them; empty:
-                                             ///< derived from the outlines by level_ground_features
+  std::optional<Radians> sun_angle =
+      {};  ///< of the search, from x towards y; with oblong pixels heights need it
+  std::vector<FeatureSet> features = {};  ///< of each detection, if the detector measures them; empty:
+                                          ///< derived from the outlines by level_ground_features
 };
 
 /// Computes the features of the type on level ground, in the order of the type, each with the variance of its

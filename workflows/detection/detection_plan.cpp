@@ -16,6 +16,7 @@ namespace {
 
 constexpr double kMinCrater = 6, kMinRock = 1, kMinTree = 0.1;  // pixels
 
+constexpr const char* kUnused = "its georeference is not used";
 struct SearchKind {
   const char* word;
   const char* type;
@@ -106,7 +107,7 @@ std::shared_ptr<const ImageSource> open_image(const DetectRequest& request,
     } catch (const Error&) {
       throw error;  // not the georeference is at fault
     }
-    warnings.push_back(fmt::format("its georeference is not used, results are in pixels: {}", error.what()));
+    warnings.push_back(fmt::format("{}, results are in pixels: {}", kUnused, error.what()));
     return image;
   }
 }
@@ -134,6 +135,11 @@ void set_sun(DetectionPlan& plan, const DetectRequest& request) {
     plan.sun_azimuth = info.sun->azimuth;
   if (info.sun && !given(request.sun_elevation) && info.sun->elevation.value > 0)
     plan.sun_elevation = info.sun->elevation;
+  const auto unused =
+      std::ranges::find_if(plan.warnings, [](const std::string& w) { return w.starts_with(kUnused); });
+  if (given(request.sun_azimuth) && unused != plan.warnings.end())
+    throw_usage("--sun-azimuth counts from map north, but " + *unused,
+                "pass --image-sun-angle instead: towards the sun, degrees from right towards down");
   if (given(request.image_sun_angle))
     plan.image_sun_angle = Degrees{request.image_sun_angle};
   else if (plan.sun_azimuth)
@@ -152,7 +158,7 @@ void set_scale(DetectionPlan& plan, const DetectRequest& request) {
   plan.gsd = Meters{request.gsd};
   if (!info.ortho) return;
   const double own = info.ortho->dx * info.ortho->crs.metres_per_unit();
-  if (info.ortho->crs.kind() != CrsKind::local && !(std::abs(own / request.gsd - 1) < 0.01))
+  if (!(std::abs(own / request.gsd - 1) < 0.01))
     plan.warnings.push_back(fmt::format(
         "--gsd {:g} is not used: the image's georeference says {:g} m per pixel", request.gsd, own));
 }

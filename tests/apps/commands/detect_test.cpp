@@ -293,6 +293,25 @@ TEST_F(Detect, RocksOfAGivenSunHaveHeights) {
   EXPECT_LT(cell(csv, 1, "height"), 1.5);
   EXPECT_THAT(detect(rocks, {"-o", csv_, "--image-sun-angle", "180", "--gsd", "0.1"}, "rocks").err,
               HasSubstr("rocks have no heights"));
+  // The shadow lies along the rows: twice as high pixels do not make it longer.
+  const std::string oblong = geo(rocks, "EPSG:32632", "500000 5200025.6 500012.8 5200000");
+  ASSERT_EQ(detect(oblong, {"-o", csv_, "--image-sun-angle", "180", "--sun-elevation", "30"}, "rocks").code,
+            0);
+  EXPECT_EQ(cell(text_of(csv_), 1, "height"), cell(csv, 1, "height"));
+  EXPECT_NEAR(cell(text_of(csv_), 1, "radius"), cell(csv, 1, "radius") * std::numbers::sqrt2, 1e-4);
+}
+
+TEST_F(Detect, GeoreferencesThatOptionsContradict) {
+  const std::string plane = folder_ / "plane.tif";
+  ASSERT_EQ(bash("gdal_translate -q -a_ullr 0 400 600 0 " + image_ + " " + plane).code, 0);
+  const Outcome sized = detect(plane, {"-o", csv_, "--image-sun-angle", "200", "--gsd", "0.5"});
+  EXPECT_EQ(sized.code, 0);
+  EXPECT_THAT(sized.err, HasSubstr("--gsd 0.5 is not used: the image's georeference says 2 m per pixel"));
+  const Outcome degrees =
+      detect(geo(image_, "EPSG:4326", "9 47 9.003 46.998"), {"-o", csv_, "--sun-azimuth", "290"});
+  EXPECT_EQ(degrees.code, 2);
+  EXPECT_THAT(degrees.err, AllOf(HasSubstr("its georeference is not used"), HasSubstr("is in degrees"),
+                                 HasSubstr("--image-sun-angle")));
 }
 
 }  // namespace
