@@ -15,8 +15,8 @@ namespace waymark::workflows {
 namespace {
 
 constexpr double kMinCrater = 6, kMinRock = 1, kMinTree = 0.1;  // pixels
-
 constexpr const char* kUnused = "its georeference is not used";
+
 struct SearchKind {
   const char* word;
   const char* type;
@@ -126,6 +126,11 @@ double map_azimuth(Degrees angle, const Georeference& place) {
 
 void set_sun(DetectionPlan& plan, const DetectRequest& request) {
   const ImageInfo& info = plan.image->info();
+  const auto unused =
+      std::ranges::find_if(plan.warnings, [](const std::string& w) { return w.starts_with(kUnused); });
+  if (given(request.sun_azimuth) && unused != plan.warnings.end())
+    throw_usage("--sun-azimuth counts from map north, but " + *unused,
+                "pass --image-sun-angle instead: towards the sun, degrees from right towards down");
   if (given(request.sun_azimuth) && !info.ortho)
     throw_usage("--sun-azimuth counts from map north, but the image has no georeference",
                 "pass --image-sun-angle instead: towards the sun, degrees from right towards down");
@@ -135,11 +140,6 @@ void set_sun(DetectionPlan& plan, const DetectRequest& request) {
     plan.sun_azimuth = info.sun->azimuth;
   if (info.sun && !given(request.sun_elevation) && info.sun->elevation.value > 0)
     plan.sun_elevation = info.sun->elevation;
-  const auto unused =
-      std::ranges::find_if(plan.warnings, [](const std::string& w) { return w.starts_with(kUnused); });
-  if (given(request.sun_azimuth) && unused != plan.warnings.end())
-    throw_usage("--sun-azimuth counts from map north, but " + *unused,
-                "pass --image-sun-angle instead: towards the sun, degrees from right towards down");
   if (given(request.image_sun_angle))
     plan.image_sun_angle = Degrees{request.image_sun_angle};
   else if (plan.sun_azimuth)

@@ -189,8 +189,8 @@ DetectResult run_detection(const DetectionPlan& plan, int threads,
   search.threads = threads;
   search.progress = progress;
   if (plan.type == "rock" && !sun) return found;
-  DoubtfulGround doubtful;
   found.detections.sun_angle = sun;
+  DoubtfulGround doubtful;
   found.detections.detections = search_image(*plan.image, search, detector(plan, type, sun, doubtful));
   if (doubtful.seen.rocks > 0) found.warnings.push_back(pipeline::unusual_ground_warning(doubtful.seen));
   if (plan.type == "rock" && !plan.sun_elevation && (info.ortho || plan.gsd))
