@@ -10,6 +10,7 @@
 #include <cmath>
 #include <initializer_list>
 #include <optional>
+#include <string_view>
 
 #include "core/error.hpp"
 #include "core/lower_case.hpp"
@@ -158,6 +159,15 @@ HeightScale height_scale(GDALRasterBand& band, const RasterReading& reading, Ras
     header.warnings.push_back(
         fmt::format("{}: heights are in '{}', an unknown unit; metres are assumed: pass --height-unit",
                     header.path, band.GetUnitType()));
+  const bool nothing_stated = reading.height_unit.empty() && reading.height_scale == 1 &&
+                              std::string_view(band.GetUnitType()).empty();
+  const Crs& crs = header.where.crs;
+  if (nothing_stated && crs.kind() == CrsKind::projected && std::abs(crs.metres_per_unit() - 1) > 1e-9)
+    header.warnings.push_back(
+        fmt::format("{}: the CRS counts in units of {:.6g} m and the band names no unit: heights are taken "
+                    "to be in metres; "
+                    "if they are in feet, name them with gdal_edit.py -units ft",
+                    header.path, crs.metres_per_unit()));
   const double metres = unit.metres * reading.height_scale;
   heights.scale = band.GetScale() * metres;
   heights.offset = band.GetOffset() * metres;

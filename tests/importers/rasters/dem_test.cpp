@@ -118,6 +118,16 @@ TEST(ImportDem, WarnsOfAUnitItDoesNotKnow) {
   EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("in 'furlong', an unknown unit; metres are assumed")));
 }
 
+TEST(ImportDem, WarnsOfHeightsWithoutAUnitInACrsOfFeet) {
+  const RasterFile feet{.cells = kHills, .crs = "EPSG:2264"};
+  const auto dem = import_dem({.files = {write_raster(feet)}});
+  EXPECT_THAT(dem->warnings(), ElementsAre(HasSubstr("heights are taken to be in metres")));
+  RasterFile named = feet;
+  named.unit = "ft";
+  EXPECT_THAT(import_dem({.files = {write_raster(named)}})->warnings(), IsEmpty());
+  EXPECT_THAT(import_dem({.files = {write_raster(feet)}, .height_unit = "m"})->warnings(), IsEmpty());
+}
+
 // A shape map of the Moon, 1737400 m in radius. Its heights, as elevations: 10 and -20 m.
 TEST(ImportDem, TakesTheRadiusOffDistancesFromTheCentre) {
   const RasterFile moon{.transform = GeoTransform{0, 1, 0, 10, 0, -1}, .crs = "IAU_2015:30100"};
