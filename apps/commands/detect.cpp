@@ -36,6 +36,10 @@ std::vector<Argument> detect_arguments(workflows::DetectRequest& request) {
       Argument{"--band", "N", &request.band, "Band of the image, from 1"}.or_else(
           "brightness of a colour image, else the first"),
       Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
+      Argument{
+          "--verifier", "FILE", &request.verifier,
+          "craters by bowl: verifier that `waymark train craters --labels` wrote, instead of the shipped one"}
+          .offering(Offer::file),
       Argument{"--tile-pixels", "N", &request.piece, "Side of the pieces a large image is searched in"}
           .or_else("8192")};
 }

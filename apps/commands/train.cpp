@@ -20,7 +20,9 @@ class Train final : public Command {
             "craters: makes scenes with known craters, half of them with the testbed of `waymark "
             "simulate`, detects bowls in them and trains a classifier of craters and a model of their "
             "rims. No third-party image is used. With --relief, trains the verifier of what that "
-            "classifier finds, on images shaded from measured relief whose craters are catalogued.\n\n"
+            "classifier finds, on images shaded from measured relief whose craters are catalogued; with "
+            "--labels "
+            "on your own images, for `waymark detect craters --verifier`.\n\n"
             "rocks: renders synthetic rocks, most of them with the testbed, detects dark spots and trains a "
             "network "
             "that separates shadows of rocks from others and corrects their sizes.\n\n"
@@ -43,27 +45,32 @@ class Train final : public Command {
              Argument{"--map", "MAP", &map_, "sensor: map of the site of the logs"}.offering(Offer::file),
              {"--scenes", "N", &request_.scenes,
               "Synthetic scenes to train on; 0: 120 of craters, 300 of relief, 240 of rocks, 120 forests of "
-              "each type"},
+              "each type. With --labels views of each image; 0: 12"},
              Argument{"--relief", "DEM,CATALOGUE", &request_.relief,
                       "craters: relief without gaps, and a table of all its craters: lon, lat (degrees), "
                       "diameter, depth (metres)"}
+                 .offering(Offer::file),
+             Argument{"--labels", "IMAGE,TABLE", &request_.labels,
+                      "craters: image, and a table of all its craters: x, y, diameter in pixels"}
                  .offering(Offer::file),
              {"--colour", "", &request_.colour, "trees in images: train on red, green and blue alone"},
              {"--rounds", "N", &request_.rounds, "Passes over all examples; 0: the default of the model"},
              {"--seed", "N", &request_.seed, "Another seed gives other initial weights and another order"},
              format_option(&format_)},
-        .examples = {{"waymark train craters -o pipeline/craters/built_in_model.cpp", "The shipped model"},
-                     {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
-                     {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
-                      "A verifier of craters, from lunar relief"},
-                     {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp",
-                      "The shipped network"},
-                     {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
-                      "Confidence of treetops in canopy models"},
-                     {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
-                      "Trees in images with near infrared"},
-                     {"waymark train sensor drive1.jsonl drive2.jsonl --map site.gpkg -o mine.json",
-                      "A sensor profile from drives with true poses"}},
+        .examples =
+            {{"waymark train craters -o pipeline/craters/built_in_model.cpp", "The shipped model"},
+             {"waymark train craters -o quick.txt --scenes 20", "A quick one, to try"},
+             {"waymark train craters --relief gld100.tif,lu.csv -o verifier.txt",
+              "A verifier of craters, from lunar relief"},
+             {"waymark train craters --labels mine.png,mine.csv --labels next.png,next.csv -o verifier.txt",
+              "A verifier of craters, from marked images"},
+             {"waymark train rocks -o pipeline/rocks/built_in_rock_network.cpp", "The shipped network"},
+             {"waymark train trees -o pipeline/forest/built_in_tree_confidence.cpp",
+              "Confidence of treetops in canopy models"},
+             {"waymark train trees naip/*.tif -o pipeline/forest/crown_network_infrared.cpp",
+              "Trees in images with near infrared"},
+             {"waymark train sensor drive1.jsonl drive2.jsonl --map site.gpkg -o mine.json",
+              "A sensor profile from drives with true poses"}},
         .result = result_keys()};
   }
 

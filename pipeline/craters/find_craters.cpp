@@ -60,8 +60,9 @@ std::vector<VerifiedBowl> bowls_in(const FilledImage& image, Radians sun, const 
                                                                   .min_correlation = kMinCorrelation}}),
                         0.5);
   BowlJudges judges;
-  if (search.verify)
-    judges = {&built_in_crater_model(), search.second_opinion ? &built_in_relief_verifier() : nullptr};
+  if (search.verify) judges.model = &built_in_crater_model();
+  if (search.verify && search.second_opinion)
+    judges.verifier = search.verifier ? search.verifier : &built_in_relief_verifier();
   return verify_bowls(image, sun, candidates, judges, search.min_confidence);
 }
 

@@ -9,6 +9,8 @@
 #include "geo/image_source.hpp"
 namespace waymark::pipeline {
 
+struct ReliefVerifier;
+
 /// How craters are found.
 enum class CraterMethod {
   bowl,   ///< correlation with shaded bowls, rim refinement, verification by a trained model
@@ -26,6 +28,7 @@ struct CraterSearch {
   double min_confidence = 0.5;  ///< candidates below are discarded; 0 keeps all
   bool verify = true;           ///< false: use the correlation alone, without the trained model
   bool second_opinion = true;   ///< ask the verifier trained on measured relief, too, if `verify`
+  const ReliefVerifier* verifier = nullptr;  ///< asked instead of the shipped one; null: the shipped one
 };
 
 /// Returns the craters of an image by descending confidence (ties by position), no two with the same rim.

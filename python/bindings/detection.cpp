@@ -16,6 +16,7 @@ const Keywords<workflows::DetectRequest>& detect_keywords() {
                               .add("output", &R::output)
                               .add("method", &R::method)
                               .add("crs", &R::crs)
+                              .add("verifier", &R::verifier)
                               .add("sun_azimuth", &R::sun_azimuth)
                               .add("sun_elevation", &R::sun_elevation)
                               .add("image_sun_angle", &R::image_sun_angle)

@@ -845,7 +845,7 @@ class UnitsFailed(Error):
 class Warning(UserWarning):
     """A warning of a workflow."""
 
-def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
 
     image is a file or an array: (rows, columns) or (rows, columns, bands). The columns are those of
@@ -856,6 +856,7 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
         method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
         crs: of a georeferenced image that names none or a wrong one
+        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun
@@ -901,13 +902,14 @@ def evaluate_track(track: Any, truth: Any, *, drive: Any = ..., align: _Path = .
         also: NAME=TRACK.csv: more tracks of the picture"""
     ...
 
-def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the craters of an image: see `detect`.
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
         method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
         crs: of a georeferenced image that names none or a wrong one
+        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun
@@ -932,13 +934,14 @@ def find_mountain_tops(dem: Any, *, output: Any = ..., transform: Any = ..., crs
     else the landmarks as a structured array. Options: min_prominence, min_isolation, nodata, base, ..."""
     ...
 
-def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation.
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
         method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
         crs: of a georeferenced image that names none or a wrong one
+        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun

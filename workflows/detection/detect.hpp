@@ -15,6 +15,8 @@ struct DetectRequest {
   std::string output;  ///< .csv, .geojson, .json or .gpkg; empty: no file is written
   std::string method;  ///< bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
   std::string crs;     ///< of a georeferenced image that names none or a wrong one
+  std::string verifier =
+      {};  ///< craters: file that `waymark train craters --labels` wrote; empty: the shipped one
   double sun_azimuth = std::numeric_limits<double>::quiet_NaN();    ///< degrees clockwise from map north
   double sun_elevation = std::numeric_limits<double>::quiet_NaN();  ///< degrees above the horizon
   double image_sun_angle =

@@ -9,6 +9,7 @@
 
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
+#include "core/text_file.hpp"
 #include "importers/images/image.hpp"
 
 namespace waymark::workflows {
@@ -124,6 +125,14 @@ double map_azimuth(Degrees angle, const Georeference& place) {
   return azimuth < 0 ? azimuth + 360 : azimuth;
 }
 
+void set_verifier(DetectionPlan& plan, const std::string& file) {
+  if (file.empty()) return;
+  if (plan.type != "crater" || plan.method != "bowl")
+    throw_usage("--verifier is for craters that the method bowl finds", "leave it out");
+  plan.verifier = std::make_shared<const pipeline::ReliefVerifier>(
+      pipeline::parse_relief_verifier(read_text(file, "the verifier"), file));
+}
+
 void set_sun(DetectionPlan& plan, const DetectRequest& request) {
   const ImageInfo& info = plan.image->info();
   const auto unused =
@@ -183,6 +192,7 @@ DetectionPlan plan_detection(const DetectRequest& request) {
                 "give both --min-diameter and --max-diameter");
   plan.search.piece = request.piece;
   plan.search.reduce_for_large = plan.type == "crater";
+  set_verifier(plan, request.verifier);
   plan.image = open_image(request, plan.warnings);
   set_sun(plan, request);
   set_scale(plan, request);

@@ -6,6 +6,7 @@
 #include <vector>
 #include "core/units.hpp"
 #include "geo/image_source.hpp"
+#include "pipeline/craters/relief_verifier.hpp"
 #include "workflows/detection/detect.hpp"
 #include "workflows/detection/search_image.hpp"
 namespace waymark::workflows {
@@ -19,6 +20,7 @@ struct DetectionPlan {
   std::optional<Degrees> sun_elevation, sun_azimuth;
   std::optional<Meters> gsd;  ///< of an image without georeference
   ImageSearch search;
+  std::shared_ptr<const pipeline::ReliefVerifier> verifier;  ///< of craters; null: the shipped one
   double min_confidence = 0.5;
   double min_treetop_confidence = 0;  ///< of trees found by heights; all are kept unless asked otherwise
   std::vector<std::string> warnings;

@@ -100,6 +100,7 @@ ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Ra
   if (plan.type == "crater")
     return [=, &plan](const Pixels& pixels, double min, double max) {
       pipeline::CraterSearch search;
+      search.verifier = plan.verifier.get();
       search.method = plan.method == "edges" ? pipeline::CraterMethod::edges : pipeline::CraterMethod::bowl;
       search.type = type;
       search.sun_angle = sun;

@@ -17,6 +17,7 @@
 #include "pipeline/engine/progress_meter.hpp"
 #include "workflows/training/crater_training_data.hpp"
 #include "workflows/training/cratered_relief.hpp"
+#include "workflows/training/marked_craters.hpp"
 #include "workflows/training/rock_training_data.hpp"
 #include "workflows/training/tree_training_data.hpp"
 #include "workflows/training/treetop_training_data.hpp"
@@ -27,6 +28,7 @@ namespace {
 constexpr int kSceneSide = 640;         // pixels of a scene of craters
 constexpr std::uint64_t kNetworks = 3;  // of crater looks: their mean is at least as good as any of them
 constexpr std::int64_t kCraterScenes = 120, kReliefScenes = 300, kTreeForests = 120;
+constexpr std::int64_t kLabelledViews = 12;  // of each marked image
 constexpr int kReliefRounds = 8;
 constexpr int kParts = 3;  // of the images, left out in turn
 
@@ -136,15 +138,34 @@ std::vector<pipeline::CraterExample> make_relief_examples(const std::vector<std:
   return examples;
 }
 
-TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& callbacks) {
-  const std::int64_t scenes = request.scenes > 0 ? request.scenes : kReliefScenes;
-  const auto examples = make_relief_examples(request.relief, scenes, callbacks);
+std::vector<pipeline::CraterExample> make_labelled_examples(const std::vector<std::string>& labels,
+                                                            std::int64_t views, const Callbacks& callbacks) {
+  std::vector<pipeline::CraterExample> examples;
+  for (const std::string& one : labels) {
+    const pipeline::LabelledScene scene = read_marked_craters(one);
+    callbacks.summary(fmt::format("{}: {} craters, light from {:.0f} degrees\n", one, scene.craters.size(),
+                                  scene.sun_angle.value / kRadiansPerDegree));
+    for (std::int64_t view = 0; view < views; ++view) {
+      const auto some = pipeline::make_relief_examples(scene, static_cast<std::uint64_t>(view));
+      examples.insert(examples.end(), some.begin(), some.end());
+    }
+  }
+  return examples;
+}
+
+TrainResult train_crater_verifier(const TrainRequest& request, const Callbacks& callbacks) {
+  const bool marked = !request.labels.empty();
+  const std::int64_t scenes = request.scenes > 0 ? request.scenes : marked ? kLabelledViews : kReliefScenes;
+  const auto examples = marked ? make_labelled_examples(request.labels, scenes, callbacks)
+                               : make_relief_examples(request.relief, scenes, callbacks);
   const auto craters = std::ranges::count_if(examples, &pipeline::CraterExample::crater);
   if (craters == 0 || craters == std::ssize(examples))
     throw Error(ErrorCode::input,
-                fmt::format("the model found {} circles, {} of them craters of the catalogue",
-                            examples.size(), craters),
-                request.relief[0], "check that the catalogue belongs to the DEM");
+                fmt::format("the model found {} circles, {} of them craters of the {}", examples.size(),
+                            craters, marked ? "table" : "catalogue"),
+                marked ? request.labels[0] : request.relief[0],
+                marked ? "check that the table belongs to the image, in pixels, and marks all craters"
+                       : "check that the catalogue belongs to the DEM");
   pipeline::CraterTraining training{.seed = static_cast<std::uint64_t>(request.seed)};
   training.rounds = request.rounds > 0 ? static_cast<int>(request.rounds) : kReliefRounds;
   std::mutex one_at_a_time;
@@ -155,14 +176,20 @@ TrainResult train_relief_verifier(const TrainRequest& request, const Callbacks& 
                                       round + 1, loss));
       });
   verifier.trained_on =
-      fmt::format("{} images of {} areas of measured relief, {} px, {} examples, {} rounds, seed {}", scenes,
-                  request.relief.size(), kSceneSide, examples.size(), training.rounds, request.seed);
+      marked ? fmt::format(
+                   "{} views of each of {} marked images, {} examples, {} of them craters, {} rounds, "
+                   "seed {}",
+                   scenes, request.labels.size(), examples.size(), craters, training.rounds, request.seed)
+             : fmt::format("{} images of {} areas of measured relief, {} px, {} examples, {} rounds, seed {}",
+                           scenes, request.relief.size(), kSceneSide, examples.size(), training.rounds,
+                           request.seed);
   TrainResult result{as_text(verifier), verifier.trained_on};
   if (!request.output.empty())
     write_model(request.output, result.model,
-                {"waymark train craters --relief DEM,CATALOGUE", "pipeline/craters/relief_verifier.hpp",
-                 "ReliefVerifier", "built_in_relief_verifier", "parse_relief_verifier",
-                 "the built-in verifier of craters", 560});
+                {marked ? "waymark train craters --labels IMAGE,TABLE"
+                        : "waymark train craters --relief DEM,CATALOGUE",
+                 "pipeline/craters/relief_verifier.hpp", "ReliefVerifier", "built_in_relief_verifier",
+                 "parse_relief_verifier", "the built-in verifier of craters", 560});
   return result;
 }
 
@@ -256,12 +283,17 @@ TrainResult train(const TrainRequest& request, const Callbacks& callbacks) {
                {.help = "Passes over the examples; 0: the usual number", .min = 0});
   if (!request.relief.empty() && request.what != "craters")
     throw Error(ErrorCode::usage, "--relief is for craters", "train " + request.what);
+  if (!request.labels.empty() && request.what != "craters")
+    throw Error(ErrorCode::usage, "--labels is for craters", "train " + request.what);
+  if (!request.labels.empty() && !request.relief.empty())
+    throw Error(ErrorCode::usage, "--labels and --relief both say what the verifier is trained on",
+                "train craters", "keep one");
   if (request.what == "trees")
     return request.images.empty() ? train_treetops(request, callbacks) : train_crowns(request, callbacks);
   if (!request.images.empty())
     throw Error(ErrorCode::usage, request.what + " are trained on made scenes, not on images",
                 request.images[0]);
-  if (!request.relief.empty()) return train_relief_verifier(request, callbacks);
+  if (!request.relief.empty() || !request.labels.empty()) return train_crater_verifier(request, callbacks);
   return request.what == "rocks" ? train_rocks(request, callbacks) : train_craters(request, callbacks);
 }
 

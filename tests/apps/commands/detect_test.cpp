@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -312,6 +313,45 @@ TEST_F(Detect, GeoreferencesThatOptionsContradict) {
   EXPECT_EQ(degrees.code, 2);
   EXPECT_THAT(degrees.err, AllOf(HasSubstr("its georeference is not used"), HasSubstr("is in degrees"),
                                  HasSubstr("--image-sun-angle")));
+}
+
+TEST_F(Detect, VerifierTrainedOnMarkedImages) {
+  std::vector<Bowl> many;
+  std::string table = "x,y,diameter\n";
+  for (int i = 0; i < 24; ++i) {
+    const Bowl bowl{40.0 + 72 * (i % 6), 40.0 + 76 * (i / 6), 9.0 + (i * 7) % 13};
+    many.push_back(bowl);
+    if (i % 3 != 0)  // hollows that nobody marked are background
+      table += fmt::format("{},{},{}\n", bowl.x, bowl.y, 2 * bowl.radius);
+  }
+  const std::string image = make_bowls(folder_ / "many.pgm", many, 200, 460, 340);
+  const std::string marks = folder_ / "many.csv", verifier = folder_ / "verifier.txt";
+  std::ofstream(marks) << table;
+  const auto train = [&](const std::string& labels, const std::string& out) {
+    return waymark({"train", "craters", "--labels", labels, "-o", out, "--scenes", "3", "--rounds", "2"});
+  };
+  const Outcome trained = train(image + "," + marks, verifier);
+  ASSERT_EQ(trained.code, 0) << trained.err;
+  EXPECT_THAT(trained.out + trained.err, HasSubstr("16 craters"));
+  EXPECT_THAT(text_of(verifier), HasSubstr("3 views of each of 1 marked images"));
+  // The same pixels with sixteen bits give the same direction of the light.
+  const std::string deep = folder_ / "deep.tif";
+  ASSERT_EQ(bash("gdal_translate -q -ot UInt16 -scale 0 255 0 65535 " + image + " " + deep).code, 0);
+  EXPECT_EQ(train(deep + "," + marks, folder_ / "deep.txt").code, 0);
+
+  ASSERT_EQ(detect(image, {"-o", csv_, "--image-sun-angle", "200", "--min-confidence", "0"}).code, 0);
+  const std::string shipped = text_of(csv_);
+  const Outcome own = detect(
+      image, {"-o", csv_, "--image-sun-angle", "200", "--min-confidence", "0", "--verifier", verifier});
+  ASSERT_EQ(own.code, 0) << own.err;
+  EXPECT_NE(text_of(csv_), shipped);
+
+  EXPECT_THAT(detect(image, {"-o", csv_, "--verifier", verifier}, "rocks").err,
+              HasSubstr("--verifier is for craters that the method bowl finds"));
+  EXPECT_EQ(detect(image, {"-o", csv_, "--verifier", marks}).code, 1);
+  EXPECT_THAT(train(image, verifier).err, HasSubstr("names no table of craters"));
+  std::ofstream(marks) << "x,y,diameter\n900,20,30\n";
+  EXPECT_THAT(train(image + "," + marks, verifier).err, HasSubstr("lies outside the image of 460 x 340"));
 }
 
 }  // namespace
