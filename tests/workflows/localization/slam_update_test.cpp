@@ -19,7 +19,8 @@ namespace {
 class SlamUpdateOfARock : public ::testing::Test {
  protected:
   // A rock that three of four images detected, two of them with a radius: 0.93 and 1.07 m.
-  OpenedMap make_map(const Crs& crs = Crs::local(), const Eigen::Vector3d& at = {5, 2, 0}) {
+  OpenedMap make_map(const Crs& crs = Crs::local(), const Eigen::Vector3d& at = {5, 2, 0},
+                     const std::vector<std::string>& empty_tables = {}) {
     const LandmarkType& type = types_[types_.id("rock")];
     rock_.type = types_.id("rock");
     rock_.uid = "rock-1";
@@ -37,7 +38,7 @@ class SlamUpdateOfARock : public ::testing::Test {
     contents.types = types_;
     contents.landmarks = {rock_};
     contents.crs = crs;
-    geodb::write_map(folder_.path() / "map.gpkg", contents, {.empty_tables = {"wall"}});
+    geodb::write_map(folder_.path() / "map.gpkg", contents, {.empty_tables = empty_tables});
     return open_robot_map((folder_.path() / "map.gpkg").string(), nullptr);
   }
 
@@ -91,7 +92,7 @@ TEST_F(SlamUpdateOfARock, ErrorsCommonToAllImagesAreKept) {
 TEST_F(SlamUpdateOfARock, CovariancesAndDirectionsOfAPolarMapAreAlongItsAxes) {
   const Crs polar = Crs::from_text("IAU_2015:30135");
   const auto at = CrsTransform(geographic_crs(polar), polar)(90, -89);
-  const OpenedMap opened = make_map(polar, {at.x, at.y, 0});
+  const OpenedMap opened = make_map(polar, {at.x, at.y, 0}, {"wall"});
   localization::SlamLandmark rock = after_drive(10, 10, 1);
   rock.key = localization::landmark_key("rock-1");
   rock.was_mapped = true;
