@@ -91,7 +91,7 @@ TEST_F(Hazards, OfDemsInFeetForNav2AreInMetres) {
       waymark({"hazards", wall("EPSG:2263"), "-o", folder_ / "h.tif", "--nav2", folder_ / "h.yaml"});
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_THAT(text_of(folder_ / "h.yaml"),
-              AllOf(HasSubstr("# Metres, 0.30480060961 times x and y of EPSG:2263"),
+              AllOf(HasSubstr("# Metres, 0.304800609601 times x and y of EPSG:2263"),
                     HasSubstr("resolution: 0.152400304801\norigin: [152400.304801, 1584954.02591, 0]")));
 }
 
