@@ -52,7 +52,8 @@ struct Store {
 
 void store(const Argument& argument, const std::vector<std::string>& words) {
   const auto wanted = static_cast<std::size_t>(words_of(argument));
-  if (!argument.flag() && !repeatable(argument) && words.size() != wanted)
+  const bool many = repeatable(argument) || argument.value.ends_with("...");
+  if (!argument.flag() && !many && words.size() != wanted)
     throw Error(ErrorCode::usage, display_name(argument) + " takes " + std::to_string(wanted) +
                                       (wanted == 1 ? " value (" : " values (") + argument.value + "), has " +
                                       std::to_string(words.size()));

@@ -161,6 +161,12 @@ void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
   };
   for (StampedPose& p : log.truth) place(p.pose);
   if (log.start) place(*log.start);
+  const Eigen::Vector2d where = log.start           ? log.start->at()
+                                : log.truth.empty() ? Eigen::Vector2d(0, 0)
+                                                    : log.truth.front().pose.at();
+  const double rotation = grid_rotation(frame, where);
+  for (LogEvent& e : log.events)
+    if (auto* heading = std::get_if<HeadingFix>(&e.what)) heading->yaw = wrap_angle(heading->yaw - rotation);
   log.in_crs = false;
 }
 

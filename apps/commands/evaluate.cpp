@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <iostream>
+#include <string>
+#include <utility>
 
 #include "apps/command.hpp"
 #include "apps/console.hpp"
@@ -107,6 +109,7 @@ class Evaluate final : public Command {
     if (what_ == "track" && !landmarks_.sensor.empty())
       throw Error(ErrorCode::usage, "--sensor weighs the quality of landmarks; a track has none", "",
                   "leave it out, or `waymark evaluate landmarks`");
+    refuse_options_of_the_other();
     if (what_ == "track") {
       track_.track = landmarks_.result;
       track_.truth = landmarks_.truth;
@@ -127,6 +130,33 @@ class Evaluate final : public Command {
   }
 
  private:
+  void refuse_options_of_the_other() const {
+    const workflows::LandmarkEvaluation plain;
+    const workflows::TrackEvaluation still;
+    const bool is_track = what_ == "track";
+    const std::pair<bool, const char*> given[] = {
+        {is_track && !landmarks_.ignore.empty(), "--ignore"},
+        {is_track && !landmarks_.type.empty(), "--type"},
+        {is_track && landmarks_.match_by != plain.match_by, "--by"},
+        {is_track && landmarks_.max_distance != plain.max_distance, "--tolerance"},
+        {is_track && landmarks_.always_allowed_distance != plain.always_allowed_distance, "--min-tolerance"},
+        {is_track && landmarks_.min_diameter != plain.min_diameter, "--min-diameter"},
+        {is_track && landmarks_.min_pixels != plain.min_pixels, "--min-pixels"},
+        {is_track && !landmarks_.size_edges.empty(), "--size-edges"},
+        {!is_track && track_.align != still.align, "--align"},
+        {!is_track && !track_.log_format.format.empty(), "--log-format"},
+        {!is_track && track_.log_format.robot != still.log_format.robot, "--robot"},
+        {!is_track && !track_.picture.empty(), "--picture"},
+        {!is_track && !track_.map.empty(), "--map"},
+        {!is_track && !more_drives_.empty(), "--drive"},
+        {!is_track && !track_.also.empty(), "--also"},
+        {!is_track && track_.max_gap != still.max_gap, "--max-gap"}};
+    for (const auto& [is_given, option] : given)
+      if (is_given)
+        throw Error(ErrorCode::usage, std::string(option) + " is no option of `evaluate " + what_ + "`", "",
+                    is_track ? "leave it out: it compares landmarks" : "leave it out: it compares tracks");
+  }
+
   std::string what_, format_ = "text";
   workflows::LandmarkEvaluation landmarks_;
   workflows::TrackEvaluation track_;

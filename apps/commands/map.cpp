@@ -39,7 +39,8 @@ class MapDrive final : public Command {
                  .or_else("walls"),
              Argument{"--max-range", "M", &request_.max_range, "Do not use sightings farther away, metres"}
                  .or_else("20"),
-             Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else("local"),
+             Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else(
+                 "that of the log's poses, or local"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})
                  .or_else("recognised by the files"),

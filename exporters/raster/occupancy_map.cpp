@@ -87,11 +87,15 @@ void write_occupancy_map(const fs::path& yaml, const fs::path& raster, const Occ
     }
   }
   write_file(image, pgm);
+  const double metres = crs.kind() == CrsKind::projected ? crs.metres_per_unit() : 1;
+  const std::string unit =
+      metres == 1 ? "Metres of " : fmt::format("Metres, {:.12g} times x and y of ", metres);
   write_file(yaml, fmt::format(
-                       "# Metres of {}. 100: hazard, 0 to 99: probability of one in per cent, 255: unknown.\n"
+                       "# {}{}. 100: hazard, 0 to 99: probability of one in per cent, 255: unknown.\n"
                        "image: {}\nmode: raw\nresolution: {:.12g}\norigin: [{:.12g}, {:.12g}, 0]\nnegate: 0\n"
                        "occupied_thresh: 0.65\nfree_thresh: 0.196\n",
-                       crs.id(), image.filename().string(), t[1], t[0], t[3] + rows * t[5]));
+                       unit, crs.id(), image.filename().string(), metres * t[1], metres * t[0],
+                       metres * (t[3] + rows * t[5])));
 }
 
 void write_class_polygons(const fs::path& map, const std::string& layer_name, const fs::path& raster,

@@ -5,11 +5,13 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -104,6 +106,11 @@ localization::TrackRow row_of(const Values& v) {
   return row;
 }
 
+localization::Track in_order_of_time(localization::Track track) {
+  std::ranges::stable_sort(track.rows, {}, &localization::TrackRow::t);
+  return track;
+}
+
 }  // namespace
 
 void write_track_csv(const fs::path& file, const localization::Track& track, const TrackOutput& output) {
@@ -169,7 +176,7 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
 
 localization::Track read_track_csv(const fs::path& file) {
   const std::string content = read_text(file, "the track");
-  if (begins_like_tum(content)) return read_track_tum(content, file);
+  if (begins_like_tum(content)) return in_order_of_time(read_track_tum(content, file));
   std::istringstream in(content);
   std::string line;
   if (!std::getline(in, line))
@@ -217,7 +224,7 @@ localization::Track read_track_csv(const fs::path& file) {
   }
   if (wrong_known)
     for (const localization::TrackRow& row : track.rows) track.named += row.matched;
-  return track;
+  return in_order_of_time(std::move(track));
 }
 
 }  // namespace waymark::exporters

@@ -24,9 +24,9 @@ void write_track_csv(const std::filesystem::path& file, const localization::Trac
 void write_track_geopackage(const std::filesystem::path& file, const localization::Track& track,
                             const TrackOutput& output);
 
-/// Reads such a CSV, or a file of TUM (read_track_tum()). Columns may be in any order; t, x, y are required,
-/// others default to 0; Track::named counts the matches where `wrong` is known. Throws Error{input} with the
-/// line.
+/// Reads such a CSV, or a file of TUM (read_track_tum()), and sorts the rows by time. Columns may be in any
+/// order; t, x, y are required, others default to 0; Track::named counts the matches where `wrong` is known.
+/// Throws Error{input} with the line.
 localization::Track read_track_csv(const std::filesystem::path& file);
 
 }  // namespace waymark::exporters

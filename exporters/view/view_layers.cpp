@@ -6,6 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
+#include "core/rotate_axes.hpp"
 #include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
@@ -30,12 +31,13 @@ std::string view_label(const Landmark& landmark, const LandmarkType& type) {
   return std::isfinite(value) ? number_format(type.features[*feature], value)(value) : "";
 }
 
-ViewLandmark view_landmark(const Landmark& landmark, const LandmarkType& type, const Crs& crs,
+ViewLandmark view_landmark(const Landmark& landmark, const LandmarkType& type, const ViewFrame& frame,
                            const Eigen::Vector3d& at) {
-  ViewLandmark out{.uid = landmark.uid,
-                   .position = position_text(crs, landmark.position.xyz.x(), landmark.position.xyz.y()),
-                   .label = view_label(landmark, type),
-                   .at = at.cast<float>()};
+  ViewLandmark out{
+      .uid = landmark.uid,
+      .position = position_text(frame.crs(), landmark.position.xyz.x(), landmark.position.xyz.y()),
+      .label = view_label(landmark, type),
+      .at = at.cast<float>()};
   const double size = value_of(landmark, find_feature(type, type.body.feature));
   out.radius = positive_or_zero(type.body.radius_per_value * size);
   out.height = positive_or_zero(
@@ -43,8 +45,11 @@ ViewLandmark view_landmark(const Landmark& landmark, const LandmarkType& type, c
   out.confidence = static_cast<float>(landmark.confidence);
   out.quality =
       static_cast<float>(equal_weight_quality(landmark).value_or(std::numeric_limits<double>::quiet_NaN()));
+  const Eigen::Matrix3d rotation = frame.rotation_from_grid(landmark.position);
+  const Eigen::Matrix3d covariance =
+      rotate_axes(landmark.covariance, std::atan2(rotation(1, 0), rotation(0, 0)));
   for (int i = 0; i < 3; ++i)
-    out.sd[static_cast<std::size_t>(i)] = std::sqrt(positive_or_zero(landmark.covariance(i, i)));
+    out.sd[static_cast<std::size_t>(i)] = std::sqrt(positive_or_zero(covariance(i, i)));
   out.seen = landmark.quality.seen;
   out.visible = landmark.quality.visible;
   out.observations = landmark.observations;
@@ -78,7 +83,7 @@ ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std
     if (layer.landmarks.size() == max_count) break;
     const Eigen::Vector3d at = frame.from_crs(landmark.position);
     if (at.allFinite() && at.norm() <= max_distance)
-      layer.landmarks.push_back(view_landmark(landmark, type, frame.crs(), at));
+      layer.landmarks.push_back(view_landmark(landmark, type, frame, at));
   }
   return layer;
 }

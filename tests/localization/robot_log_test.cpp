@@ -26,8 +26,10 @@ TEST(RobotLog, YawsAlongTheAxesOfACrsAreTurnedToTheMapFrame) {
   log.in_crs = true;
   log.start = Pose2{at.x, at.y, 0};
   log.truth = {{0, *log.start}, {1, Pose2{at.x + 10, at.y, 0}}};
+  log.events = {{0, HeadingFix{.yaw = 0.1, .sd = 0.02}}};
   convert_to_map_frame(log, LocalFrame(polar, {{at.x, at.y, 0}}));
   EXPECT_NEAR(log.start->yaw, std::numbers::pi / 2, 1e-6);
+  EXPECT_NEAR(std::get<HeadingFix>(log.events[0].what).yaw, std::numbers::pi / 2 + 0.1, 1e-6);
   const Eigen::Vector2d along = log.truth[1].pose.at() - log.truth[0].pose.at();
   EXPECT_NEAR(along.y(), 10, 0.1);
   EXPECT_NEAR(std::atan2(along.y(), along.x()), log.truth[1].pose.yaw, 1e-4) << "it drives ahead";

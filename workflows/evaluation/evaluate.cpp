@@ -30,6 +30,16 @@ struct Truth {
   bool headings = true;
 };
 
+/// Throws if true poses are coordinates that are no metres.
+void check_metres(const localization::RobotLog& log, const std::string& file) {
+  if (!log.in_crs || log.crs.empty() || log.truth.empty()) return;
+  const Crs crs = Crs::from_text(log.crs);
+  if (crs.kind() == CrsKind::local || (crs.kind() == CrsKind::projected && crs.metres_per_unit() == 1))
+    return;
+  throw Error(ErrorCode::usage, fmt::format("the true poses are in {}, which is not in metres", crs.id()),
+              file, "give --map MAP, and a track that was written without --crs");
+}
+
 Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   const std::string& file = request.truth;
   if (file.ends_with(".csv") || file.ends_with(".tum")) {
@@ -39,7 +49,10 @@ Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
     return truth;
   }
   localization::RobotLog log = importers::import_log(file, all_types(), request.log_format);
-  if (frame) localization::convert_to_map_frame(log, *frame);
+  if (frame)
+    localization::convert_to_map_frame(log, *frame);
+  else
+    check_metres(log, file);
   Truth truth{log.truth, log.felled, false};
   for (const localization::StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
   return truth;
@@ -158,6 +171,9 @@ std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request
                                                const Callbacks& callbacks) {
   if (!(request.max_distance >= 0) || !(request.always_allowed_distance >= 0) || !(request.min_diameter >= 0))
     throw Error(ErrorCode::usage, "distances and sizes are not negative", "evaluate landmarks");
+  if (!std::ranges::is_sorted(request.size_edges))
+    throw Error(ErrorCode::usage, "the diameters of --size-edges do not ascend", "evaluate landmarks",
+                "e.g. --size-edges 1 2 5");
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.result);
   const ScoredTables found = read_scored_things(request.result, request.type, 0, sensor.get());

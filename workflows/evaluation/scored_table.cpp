@@ -125,6 +125,12 @@ ScoredTables from_table(importers::TableSource& table, const std::string& only, 
         throw Error(ErrorCode::input, fmt::format("'{}' is no number (column {})", row.cells[i], names[i]),
                     table.row_location(row));
     }
+    const auto has_value = [&](std::initializer_list<const char*> any) {
+      return std::ranges::any_of(any, [&](const char* name) { return values.contains(name); });
+    };
+    if (!has_value({"x", "x_px", "geom_x"}) || !has_value({"y", "y_px", "geom_y"}))
+      throw Error(ErrorCode::input, "the row has no position", table.row_location(row),
+                  "complete its x and y, or remove it");
     if (only.empty() || type.empty() || type == only)
       tables[type.empty() ? only : type].push_back(thing_of(values, min_pixels));
   }

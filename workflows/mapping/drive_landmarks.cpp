@@ -11,6 +11,8 @@
 #include <numbers>
 #include <set>
 
+#include "core/rotate_axes.hpp"
+#include "geo/grid_rotation.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
@@ -87,6 +89,31 @@ void value_landmark(Landmark& landmark, std::span<const Observation* const> evid
       pipeline::existence_probability(confidences, visible - landmark.quality.seen, type.existence);
 }
 
+/// Moves a landmark or an observation from the map frame to the CRS.
+template <class Placed>
+void place_in_crs(Placed& one, const LocalFrame& frame, const TypeRegistry& types) {
+  const Eigen::Vector2d at = one.position.xyz.template head<2>();
+  one.position.xyz.template head<2>() =
+      frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.template head<2>();
+  rotate_axes(one, types[one.type].features, grid_rotation(frame, at));
+}
+
+/// The uids are then those of the positions in the CRS.
+void place_in_crs(DriveLandmarks& made, const LocalFrame& frame, const TypeRegistry& types) {
+  std::vector<std::string> uids_in_frame;
+  for (Landmark& landmark : made.landmarks) {
+    uids_in_frame.push_back(landmark.uid);
+    place_in_crs(landmark, frame, types);
+  }
+  assign_uids(types, frame.crs(), made.landmarks);
+  std::map<std::string_view, std::string_view> uids;
+  for (std::size_t i = 0; i < made.landmarks.size(); ++i) uids[uids_in_frame[i]] = made.landmarks[i].uid;
+  for (Observation& o : made.evidence) {
+    place_in_crs(o, frame, types);
+    if (const auto uid = uids.find(o.landmark_uid); uid != uids.end()) o.landmark_uid = uid->second;
+  }
+}
+
 }  // namespace
 
 std::vector<DriveLook> looks_of_drive(const localization::RobotLog& log,
@@ -143,8 +170,8 @@ bool covers(const DriveLook& look, const Eigen::Vector2d& at, double direction, 
   return false;
 }
 
-DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types, const Crs& crs,
-                                  const DriveMappingOptions& options) {
+DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types,
+                                  const LocalFrame& frame, const DriveMappingOptions& options) {
   const localization::FeatureScales scales(types);
   std::vector<Observation> observations;
   std::map<std::string_view, std::size_t> by_name;
@@ -169,7 +196,7 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   rules.association.max_distance = options.max_distance;
   rules.association.position_floor = options.association_sd;
   pipeline::MergedObservations merged =
-      pipeline::merge_observations(std::move(observations), types, crs, rules);
+      pipeline::merge_observations(std::move(observations), types, Crs::local(), rules);
   std::map<std::string_view, std::vector<const Observation*>> evidence;
   for (const Observation& o : merged.evidence)
     if (o.rejected.empty()) evidence[o.landmark_uid].push_back(&o);
@@ -178,6 +205,7 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   made.landmarks = std::move(merged.landmarks);
   made.evidence = std::move(merged.evidence);
   made.improbable = pipeline::remove_improbable(made.landmarks, made.evidence, types);
+  if (frame.crs().kind() != CrsKind::local) place_in_crs(made, frame, types);
   return made;
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 #include "core/landmark.hpp"
-#include "geo/crs.hpp"
+#include "geo/local_frame.hpp"
 #include "landmarks/landmark_type.hpp"
 #include "localization/replay_log.hpp"
 namespace waymark::workflows {
@@ -21,8 +21,8 @@ struct DriveMappingOptions {
 
 /// What the sensor saw from one known pose.
 struct DriveLook {
-  std::string name;  ///< unique, source of its observations
-  localization::Pose2 map_from_sensor;
+  std::string name;                     ///< unique, source of its observations
+  localization::Pose2 map_from_sensor;  ///< map frame, m
   localization::SightingSet seen;
   localization::LaserScan scan;  ///< without ranges if the log has sightings only
 };
@@ -45,11 +45,11 @@ struct DriveLandmarks {
 };
 
 /// Merges the sightings of looks into landmarks and values them (Rossmann et al. 3.2 and 3.3, a look in place
-/// of an image). Metres of a local or projected CRS; heights are unknown.
+/// of an image). They are in the CRS of `frame`, that of the looks; heights are unknown.
 /// - A look covers a landmark if it detected it. So does one no farther than the farthest look that did (eq.
 ///   4), if the beam towards the landmark reaches it from the open side.
-DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types, const Crs& crs,
-                                  const DriveMappingOptions& options = {});
+DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types,
+                                  const LocalFrame& frame, const DriveMappingOptions& options = {});
 
 /// Returns whether a look would show a landmark at a position of the map, m, by range, angle of view and the
 /// beam towards it. `direction`: azimuth of the open side, rad; NaN: seen from all sides.

@@ -11,8 +11,10 @@
 
 #include "core/error.hpp"
 #include "exporters/vector/track_file.hpp"
+#include "geo/local_frame.hpp"
 #include "geodb/write_map.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
+#include "localization/robot_log.hpp"
 #include "workflows/mapping/drive_landmarks.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
@@ -21,26 +23,36 @@
 namespace waymark::workflows {
 namespace {
 
-std::vector<localization::StampedPose> read_poses(const DriveMapRequest& request,
-                                                  const localization::RobotLog& log) {
-  std::vector<localization::StampedPose> poses = log.truth;
+/// Puts the poses of a file in the place of those of the log.
+void read_poses(const DriveMapRequest& request, localization::RobotLog& log) {
   if (!request.poses.empty()) {
-    poses.clear();
+    log.truth.clear();
     for (const localization::TrackRow& row : exporters::read_track_csv(request.poses).rows)
-      poses.push_back({row.t, row.at.pose});
+      log.truth.push_back({row.t, row.at.pose});
   }
-  if (poses.empty())
+  if (log.truth.empty())
     throw Error(ErrorCode::usage, "the poses of the drive are unknown", request.log,
                 "give --poses TRACK.csv: t, x, y, yaw");
-  return poses;
 }
 
-Crs crs_of_poses(const std::string& text) {
+/// Returns the CRS of the poses: the CRS of the log if they are its poses, else that of the request.
+Crs crs_of_poses(const DriveMapRequest& request, const localization::RobotLog& log) {
+  const bool is_stated = request.poses.empty() && log.in_crs && !log.crs.empty();
+  const std::string text = !request.crs.empty() ? request.crs : is_stated ? log.crs : "local";
   const Crs crs = text == "local" ? Crs::local() : Crs::from_text(text);
+  if (is_stated && !crs.same_as(Crs::from_text(log.crs)))
+    throw Error(ErrorCode::usage, fmt::format("the poses of the log are in {}, not in {}", log.crs, text),
+                request.log, "leave --crs out, and convert the map: waymark export MAP OUT --crs ...");
   if (crs.kind() == CrsKind::geographic)
-    throw Error(ErrorCode::usage, "the poses of a drive are in metres, not in degrees", "--crs " + text,
-                "give a projected CRS, or local");
+    throw Error(ErrorCode::usage, "the poses of a drive are in metres, not in degrees", "CRS " + text,
+                "give poses in a projected CRS, or local ones");
   return crs;
+}
+
+/// Returns a frame about the first pose.
+LocalFrame frame_of_poses(const Crs& crs, const localization::RobotLog& log) {
+  const localization::Pose2& first = log.truth.front().pose;
+  return {crs, crs.kind() == CrsKind::local ? Point<MapCrs>() : Point<MapCrs>{{first.x, first.y, 0}}};
 }
 
 }  // namespace
@@ -53,20 +65,23 @@ DriveMapResult map_drive(const DriveMapRequest& request, const Callbacks& callba
   const TypeRegistry& types = all_types();
   const localization::ScanDetector detect =
       localization::make_laser_detector(types, {.find = request.scans, .features = true});
-  const localization::RobotLog log = importers::import_log(request.log, types, request.log_format);
+  localization::RobotLog log = importers::import_log(request.log, types, request.log_format);
   for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
-  const std::vector<localization::StampedPose> poses = read_poses(request, log);
+  read_poses(request, log);
   geodb::MapContents contents;
   contents.types = types;
-  contents.crs = crs_of_poses(request.crs);
+  contents.crs = crs_of_poses(request, log);
+  const LocalFrame frame = frame_of_poses(contents.crs, log);
+  log.in_crs = true;
+  localization::convert_to_map_frame(log, frame);
   std::filesystem::path name(request.log);
   if (!name.has_filename()) name = name.parent_path();
-  const std::vector<DriveLook> looks = looks_of_drive(log, poses, detect, name.filename().string());
+  const std::vector<DriveLook> looks = looks_of_drive(log, log.truth, detect, name.filename().string());
   if (looks.empty())
     throw Error(ErrorCode::input, "no scan or sighting of the log has a known pose", request.log,
                 "are the poses of the same drive, with the same clock?");
   DriveLandmarks made =
-      landmarks_of_looks(looks, types, contents.crs, DriveMappingOptions{.max_range = request.max_range});
+      landmarks_of_looks(looks, types, frame, DriveMappingOptions{.max_range = request.max_range});
   std::size_t sightings = 0;
   for (const DriveLook& look : looks) sightings += look.seen.sightings.size();
   contents.landmarks = std::move(made.landmarks);

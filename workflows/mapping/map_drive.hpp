@@ -10,10 +10,10 @@ namespace waymark::workflows {
 
 /// A drive with known poses that becomes a map.
 struct DriveMapRequest {
-  std::string log;            ///< file, or folder of a dataset
-  std::string poses;          ///< track.csv: t, x, y, yaw, or TUM; empty: the true poses of the log
-  std::string map;            ///< to write; an older map of that name is replaced
-  std::string crs = "local";  ///< of the poses, local or projected
+  std::string log;    ///< file, or folder of a dataset
+  std::string poses;  ///< track.csv: t, x, y, yaw, or TUM; empty: the true poses of the log
+  std::string map;    ///< to write; an older map of that name is replaced
+  std::string crs;    ///< of the poses, local or projected; empty: the log's, else local
   importers::LogImport log_format = {};
   std::string scans = "walls";    ///< detectors for laser scans, separated by commas
   double max_range = 20;          ///< m, > 0: farther sightings are not used

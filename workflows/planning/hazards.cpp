@@ -16,6 +16,7 @@
 #include "exporters/raster/occupancy_map.hpp"
 #include "exporters/report/counting_area.hpp"
 #include "geo/axes_rotation.hpp"
+#include "geo/local_frame.hpp"
 #include "geo/metric_crs.hpp"
 #include "geodb/map_store.hpp"
 #include "importers/rasters/dem.hpp"
@@ -129,6 +130,30 @@ void close_outside(Grid<float>& classes, const Window& window, const importers::
         classes(c, r) = static_cast<float>(planning::HazardClass::unknown);
 }
 
+/// Warns of a CRS that stretches lengths at the middle of a grid, such as Web Mercator: slopes are wrong by
+/// it.
+void warn_of_stretch(const GridGeometry& grid, const std::string& file, const Callbacks& callbacks) {
+  constexpr double kStep = 100, kMaxStretch = 0.02;  // m; a UTM zone has 0.001
+  const Crs& crs = grid.where.crs;
+  if (crs.kind() != CrsKind::projected) return;
+  const double x = grid.where.x(static_cast<double>(grid.columns) / 2),
+               y = grid.where.y(static_cast<double>(grid.rows) / 2), step = kStep / crs.metres_per_unit();
+  const LocalFrame frame(crs, {{x, y, 0}});
+  const auto stretch = [&](double dx, double dy) {
+    return kStep / frame.map_frame_from_crs({{x + dx, y + dy, 0}}).xyz.head<2>().norm();
+  };
+  const double along_x = stretch(step, 0), along_y = stretch(0, step);
+  if (!(std::max(std::abs(along_x - 1), std::abs(along_y - 1)) > kMaxStretch)) return;
+  GridGeometry degrees;
+  degrees.columns = degrees.rows = 1;
+  const auto middle = CrsTransform(crs, geographic_crs(crs))(x, y);
+  degrees.where = {geographic_crs(crs), middle.x, middle.y, 1, -1};
+  callbacks.warning(fmt::format(
+      "{} stretches lengths here, by {:.3g} along x and {:.3g} along y: slopes and sizes are wrong by that; "
+      "project it: gdalwarp -t_srs {} {}",
+      crs.id(), along_x, along_y, fitting_metric_crs(degrees), file));
+}
+
 std::string hazard_style() {
   return raster_style({.band = static_cast<int>(planning::HazardBand::probability) + 1,
                        .colours = {{0, "#1a9641", "0"},
@@ -182,6 +207,7 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   const GridGeometry& grid = dem->geometry();
   const double metres = grid.where.crs.metres_per_unit(), cell = grid.where.dx * metres;
 
+  warn_of_stretch(grid, request.input, callbacks);
   planning::HazardRequest hazard{
       .vehicle = vehicle,
       .errors = {request.height_sd >= 0 ? request.height_sd : dem->height_sd(), request.height_correlation},

@@ -76,6 +76,25 @@ TEST_F(Hazards, WallIsAHazardAndTheVoidUnknown) {
   EXPECT_NEAR(area, expected, 1e-6);
 }
 
+TEST_F(Hazards, OfACrsThatStretchesLengthsComeWithAWarning) {
+  const std::string dem = wall("EPSG:3857");
+  const Outcome made = waymark({"hazards", dem, "-o", folder_ / "h.tif"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, AllOf(HasSubstr("EPSG:3857 stretches lengths here, by 1.35"),
+                              HasSubstr("gdalwarp -t_srs EPSG:32631 " + dem)));
+  EXPECT_THAT(waymark({"hazards", wall(), "-o", folder_ / "u.tif"}).err,
+              testing::Not(HasSubstr("stretches")));
+}
+
+TEST_F(Hazards, OfDemsInFeetForNav2AreInMetres) {
+  const Outcome made =
+      waymark({"hazards", wall("EPSG:2263"), "-o", folder_ / "h.tif", "--nav2", folder_ / "h.yaml"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(text_of(folder_ / "h.yaml"),
+              AllOf(HasSubstr("# Metres, 0.304800609601 times x and y of EPSG:2263"),
+                    HasSubstr("resolution: 0.152400304801\norigin: [152400.304801, 1584954.02591, 0]")));
+}
+
 TEST_F(Hazards, OfTheMapForNav2HazardsAloneAreObstacles) {
   const Outcome made = waymark(
       {"hazards", wall(), "-o", folder_ / "h.tif", "--height-sd", "0.2", "--nav2", folder_ / "h.yaml"});

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
+#include <tuple>
 
 #include "exporters/report/relief_picture.hpp"
 #include "exporters/view/make_scene.hpp"
@@ -73,6 +74,18 @@ TEST_F(ViewSceneOfMap, LandmarksAreMetresApart) {
   EXPECT_FLOAT_EQ(l[0].features[0][0], 3000);
   EXPECT_FLOAT_EQ(l[0].features[0][1], 5);
   EXPECT_FLOAT_EQ(l[0].sd[0], 30);
+}
+
+TEST_F(ViewSceneOfMap, DeviationsOfPositionsAreThoseEastAndNorth) {
+  // South polar stereographic of the Moon: x grows to the east at 0 degrees, to the north at 90 degrees.
+  for (const auto& [x, y, east, north] : {std::tuple(0.0, 30000.0, 30, 2), std::tuple(30000.0, 0.0, 2, 30)}) {
+    geodb::MapContents map = three_summits("IAU_2015:30135", x, y, 50);
+    for (Landmark& l : map.landmarks)
+      l.covariance.topLeftCorner<2, 2>() = Eigen::Vector2d(900, 4).asDiagonal();
+    const ViewScene scene = scene_of(map);
+    EXPECT_NEAR(scene.layers.at(0).landmarks.at(0).sd[0], east, 0.1);
+    EXPECT_NEAR(scene.layers.at(0).landmarks.at(0).sd[1], north, 0.1);
+  }
 }
 
 TEST_F(ViewSceneOfMap, PositionsAreSmallNumbersFarFromTheOriginOfTheCrs) {

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 
+#include "core/rotate_axes.hpp"
+#include "geo/grid_rotation.hpp"
+#include "geo/point_at_height.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "tests/localization/made_rooms.hpp"
 #include "workflows/registries.hpp"
@@ -47,7 +50,7 @@ std::vector<DriveLook> made_looks() {
 }
 
 TEST(DriveLandmarks, AreTheCornersOfTheRoom) {
-  const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
+  const auto made = landmarks_of_looks(made_looks(), all_types(), LocalFrame(Crs::local(), {}));
   const TypeId corner = all_types().id("wall_corner");
   for (const Eigen::Vector2d& at : {Eigen::Vector2d(8, 0), Eigen::Vector2d(8, 6), Eigen::Vector2d(0, 6)}) {
     const auto found = std::ranges::count_if(made.landmarks, [&](const Landmark& l) {
@@ -64,6 +67,41 @@ TEST(DriveLandmarks, AreTheCornersOfTheRoom) {
   for (const Observation& o : made.evidence) EXPECT_EQ(o.rejected.empty(), !o.landmark_uid.empty());
 }
 
+// Units of feet, a grid whose scale is 2.1, and axes turned by 90 degrees.
+TEST(DriveLandmarks, AreTheSameInAnyCrs) {
+  const std::vector<DriveLook> looks = made_looks();
+  const auto expected = landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {}));
+  const auto nearest = [&](const Landmark& l, const Eigen::Vector2d& at) {
+    return *std::ranges::min_element(expected.landmarks, {}, [&](const Landmark& e) {
+      return (e.position.xyz.head<2>() - at).norm() + (e.type == l.type ? 0 : 100) +
+             std::abs(difference(e.features[0].value, l.features[0].value, Scale::direction));
+    });
+  };
+  for (const auto& [name, lon, lat] :
+       {std::tuple("EPSG:2263", -74.0, 40.7), std::tuple("EPSG:3857", 5.0, 62.0),
+        std::tuple("EPSG:4326", 5.0, 62.0), std::tuple("IAU_2015:30135", 90.0, -89.0)}) {
+    const Crs crs = Crs::from_text(name);
+    const auto at = CrsTransform(geographic_crs(crs), crs)(lon, lat);
+    const LocalFrame frame(crs, {{at.x, at.y, 0}});
+    const auto made = landmarks_of_looks(looks, all_types(), frame);
+    EXPECT_EQ(made.landmarks.size(), expected.landmarks.size()) << name;
+    EXPECT_EQ(made.improbable, expected.improbable) << name;
+    for (Landmark l : made.landmarks) {
+      const Eigen::Vector2d there = plan_position(frame, l.position.xyz.x(), l.position.xyz.y());
+      const LandmarkType& type = all_types()[l.type];
+      rotate_axes(l, type.features, -grid_rotation(frame, there));
+      const Landmark same = nearest(l, there);
+      EXPECT_LT((same.position.xyz.head<2>() - there).norm(), 1e-3) << name;
+      const Eigen::Matrix3d off = same.covariance - l.covariance;
+      EXPECT_LT((off.topLeftCorner<2, 2>().norm()), 1e-6) << name;
+      EXPECT_NEAR(difference(same.features[0].value, l.features[0].value, type.features[0].scale), 0, 1e-3)
+          << name;
+      EXPECT_EQ(same.quality.seen, l.quality.seen) << name;
+      EXPECT_EQ(same.quality.visible, l.quality.visible) << name;
+    }
+  }
+}
+
 TEST(DriveLandmarks, SightingsOutOfRangeAreCounted) {
   const auto looks = made_looks();
   std::int64_t far = 0, all = 0;
@@ -71,20 +109,21 @@ TEST(DriveLandmarks, SightingsOutOfRangeAreCounted) {
     for (const SeenLandmark& s : look.seen.sightings) ++all, far += *s.range > 3;
   ASSERT_GT(far, 0);
   ASSERT_LT(far, all);
-  const auto made = landmarks_of_looks(looks, all_types(), Crs::local(), {.max_range = 3});
+  const auto made = landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {}), {.max_range = 3});
   EXPECT_EQ(made.too_far, far);
   EXPECT_EQ(std::ssize(made.evidence), all - far);
-  EXPECT_EQ(landmarks_of_looks(looks, all_types(), Crs::local()).too_far, 0);
+  EXPECT_EQ(landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {})).too_far, 0);
 }
 
 TEST(DriveLandmarks, SightingsWithoutPositionOrTypeAreCounted) {
   auto looks = made_looks();
-  const std::size_t all = landmarks_of_looks(looks, all_types(), Crs::local()).evidence.size();
+  const std::size_t all =
+      landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {})).evidence.size();
   std::vector<SeenLandmark>& seen = looks.at(3).seen.sightings;
   ASSERT_GE(seen.size(), 2u);
   seen[0].bearing.reset();
   seen[1].type.reset(), seen[1].possible_types = {{.type = 0, .features = {}}, {.type = 1, .features = {}}};
-  const auto made = landmarks_of_looks(looks, all_types(), Crs::local());
+  const auto made = landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {}));
   EXPECT_EQ(made.unplaced, 1);
   EXPECT_EQ(made.untyped, 1);
   EXPECT_EQ(made.evidence.size(), all - 2);
@@ -92,7 +131,7 @@ TEST(DriveLandmarks, SightingsWithoutPositionOrTypeAreCounted) {
 
 // Both faces of the partition end at one position, and look in opposite directions.
 TEST(DriveLandmarks, OfTwoFacesOfOneWallStayTwo) {
-  const auto made = landmarks_of_looks(made_looks(), all_types(), Crs::local());
+  const auto made = landmarks_of_looks(made_looks(), all_types(), LocalFrame(Crs::local(), {}));
   const TypeId end = all_types().id("wall_end");
   std::vector<double> facing;
   for (const Landmark& l : made.landmarks)
@@ -114,7 +153,7 @@ TEST(DriveLandmarks, AStandingRobotLooksOnce) {
   const auto detect = make_laser_detector(all_types(), {.find = "walls"});
   EXPECT_EQ(looks_of_drive(log, poses, detect, "made").size(), 1u);
   EXPECT_TRUE(looks_of_drive(log, {}, detect, "made").empty());
-  EXPECT_TRUE(landmarks_of_looks({}, all_types(), Crs::local()).landmarks.empty());
+  EXPECT_TRUE(landmarks_of_looks({}, all_types(), LocalFrame(Crs::local(), {})).landmarks.empty());
 }
 
 TEST(DriveLandmarks, AreCoveredFromTheirOpenSideOnly) {
