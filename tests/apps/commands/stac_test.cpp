@@ -131,6 +131,14 @@ TEST_F(Stac, CollectionOfAMapAndARaster) {
   EXPECT_THAT(raster["assets"]["raster"]["type"].get<std::string>(), HasSubstr("image/tiff"));
 }
 
+TEST_F(Stac, AnItemInTheWorkingFolderHasNoFolderInItsName) {
+  rocks("EPSG:32633");
+  const Outcome made = bash("cd " + folder_.path().string() + " && $WAYMARK stac rocks.gpkg -o rocks.json");
+  ASSERT_EQ(made.code, 0) << made.err;
+  expect_valid_item(record("rocks.json"));
+  EXPECT_EQ(record("rocks.json")["assets"]["map"]["href"], "./rocks.gpkg");
+}
+
 TEST_F(Stac, Pds4LabelsAreFilledAndReadBack) {
   const std::string map = rocks("IAU_2015:49900"), label = folder_ / "rocks.xml";
   const Outcome bare = waymark({"export", map, folder_ / "bare.xml", "-of", "PDS4"});
