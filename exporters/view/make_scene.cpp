@@ -99,6 +99,16 @@ ViewScene make_view_scene(const geodb::MapStore& map, const LocalFrame& frame, c
   const std::vector<std::string> dems = request.dems.empty() ? relief_names(map) : request.dems;
   const ViewFrame map_frame(crs, frame, Eigen::Vector3d::Zero());
   const auto dem = dem_area(dems, map_frame);
+  if (contents.box.isEmpty() && !dem &&
+      std::ranges::any_of(sections, [](const LandmarkSection& s) { return s.count > 0; }))
+    throw Error(
+        ErrorCode::input,
+        fmt::format(
+            "all landmarks lie more than {:.0f} km from the middle of the map, below the horizon there",
+            limit / 1000),
+        map.path().string(),
+        "`waymark export MAP PART.gpkg --aoi AREA` takes a part; `waymark web` and `report` show whole "
+        "bodies");
   if (contents.box.isEmpty() && !dem)
     throw Error(ErrorCode::input, "there is nothing to show: no landmarks, no elevation model, no tracks",
                 map.path().string(), "give --dem FILE, --log LOG or --track TRACK");

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cpl_csv.h>
+#include <cpl_minixml.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
+#include <memory>
 
 #include "core/error.hpp"
 #include "importers/tables/table.hpp"
@@ -41,12 +45,65 @@ std::string text(double value) {
   return std::isfinite(value) ? fmt::format("{}", value) : "";
 }
 
+/// Fields that are empty in a delimited table of PDS4: GDAL reads their numbers as 0.
+class EmptyFields {
+ public:
+  EmptyFields(GDALDataset& dataset, OGRLayer& layer, const std::string& path) {
+    if (!EQUAL(dataset.GetDriverName(), "PDS4")) return;
+    const std::unique_ptr<CPLXMLNode, void (*)(CPLXMLNode*)> label(CPLParseXMLFile(path.c_str()),
+                                                                   CPLDestroyXMLNode);
+    if (!label) return;
+    CPLStripXMLNamespace(label.get(), nullptr, TRUE);
+    CPLXMLNode* product = CPLSearchXMLNode(label.get(), "=Product_Observational");
+    for (CPLXMLNode* area = product != nullptr ? product->psChild : nullptr; area; area = area->psNext)
+      if (EQUAL(area->pszValue, "File_Area_Observational"))
+        for (CPLXMLNode* table = area->psChild; table; table = table->psNext)
+          if (EQUAL(table->pszValue, "Table_Delimited") &&
+              EQUAL(CPLGetXMLValue(table, "local_identifier", ""), layer.GetName()))
+            open(*area, *table, *layer.GetLayerDefn(), path);
+  }
+
+  /// Reads the next record. `fields` of the layer have no value in it.
+  std::vector<int> next() {
+    std::vector<int> fields;
+    if (!file_) return fields;
+    const CPLStringList record(CSVReadParseLine2L(file_.get(), delimiter_));
+    for (int i = 0; i < record.size() && i < static_cast<int>(field_of_.size()); ++i)
+      if (field_of_[static_cast<std::size_t>(i)] >= 0 && *record[i] == '\0')
+        fields.push_back(field_of_[static_cast<std::size_t>(i)]);
+    return fields;
+  }
+
+ private:
+  void open(CPLXMLNode& area, CPLXMLNode& table, OGRFeatureDefn& fields, const std::string& path) {
+    const std::string separator = CPLGetXMLValue(&table, "field_delimiter", "");
+    delimiter_ = EQUAL(separator.c_str(), "Horizontal Tab") ? '\t'
+                 : EQUAL(separator.c_str(), "Semicolon")    ? ';'
+                 : EQUAL(separator.c_str(), "Vertical Bar") ? '|'
+                                                            : ',';
+    CPLXMLNode* record = CPLGetXMLNode(&table, "Record_Delimited");
+    for (CPLXMLNode* field = record != nullptr ? record->psChild : nullptr; field; field = field->psNext)
+      if (EQUAL(field->pszValue, "Field_Delimited"))
+        field_of_.push_back(fields.GetFieldIndex(CPLGetXMLValue(field, "name", "")));
+    const std::string name =
+        CPLFormFilename(CPLGetPath(path.c_str()), CPLGetXMLValue(&area, "File.file_name", ""), nullptr);
+    file_.reset(VSIFOpenL(name.c_str(), "rb"));
+    if (file_)
+      VSIFSeekL(file_.get(), std::strtoull(CPLGetXMLValue(&table, "offset", "0"), nullptr, 10), SEEK_SET);
+  }
+
+  std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file_{nullptr, VSIFCloseL};
+  char delimiter_ = ',';
+  std::vector<int> field_of_;  // of the layer; -1: a coordinate
+};
+
 class OgrTable final : public TableSource {
  public:
   OgrTable(const std::string& path, const std::string& name, const std::string& type)
       : dataset_(open_vector(path, "file",
                              "pass --from csv for a table of text; `ogrinfo --formats` lists the rest")),
-        layer_(&choose_layer(*dataset_, path, name, type)) {
+        layer_(&choose_layer(*dataset_, path, name, type)),
+        empty_(*dataset_, *layer_, path) {
     const GdalListener quiet;
     header_.path = path;
     header_.layer = layer_->GetName();
@@ -76,6 +133,7 @@ class OgrTable final : public TableSource {
                   fmt::format("the layer breaks off after feature {}: {}", row.number, fault), header_.path,
                   "fetch or write it again");
     }
+    for (const int field : empty_.next()) feature->SetFieldNull(field);
     row.number = feature->GetFID();
     row.cells.clear();
     for (int i = 0; i < feature->GetFieldCount(); ++i) row.cells.push_back(cell(*feature, i));
@@ -115,6 +173,7 @@ class OgrTable final : public TableSource {
   TableHeader header_;
   GdalDataset dataset_;
   OGRLayer* layer_;
+  EmptyFields empty_;
   bool broken_ = false;  // rows after a fault are not read
 };
 

@@ -6,11 +6,15 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <memory>
+
 #include "core/error.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark::importers {
 namespace {
+
+constexpr std::size_t kMaxHead = 65536;  // bytes of a GML file in which its CRS is named
 
 /// Throws Error{input} if an SQLite file has a recursive view: GDAL would read its rows without end.
 void refuse_recursive_views(GDALDataset& dataset, const std::string& path) {
@@ -29,6 +33,23 @@ void refuse_recursive_views(GDALDataset& dataset, const std::string& path) {
                 "remove the view, or copy its rows into a table");
 }
 
+/// Tells if positions of a GML file are latitude and longitude that GDAL does not exchange. It does so for
+/// codes of EPSG, but the axes of any authority's urn have the authority's order (OGC 07-036r1, 09-048r5).
+bool keeps_latitude_first(GDALDataset& dataset, const std::string& path) {
+  if (!EQUAL(dataset.GetDriverName(), "GML") || dataset.GetLayerCount() == 0) return false;
+  const OGRSpatialReference* reference = dataset.GetLayer(0)->GetSpatialRef();
+  const char* const authority = reference != nullptr ? reference->GetAuthorityName(nullptr) : nullptr;
+  OGRAxisOrientation first = OAO_Other;
+  if (authority == nullptr || EQUAL(authority, "EPSG") || !reference->IsGeographic()) return false;
+  reference->GetAxis(nullptr, 0, &first);
+  if (first != OAO_North) return false;
+  std::string head(kMaxHead, '\0');
+  const std::unique_ptr<VSILFILE, int (*)(VSILFILE*)> file(VSIFOpenL(path.c_str(), "rb"), VSIFCloseL);
+  head.resize(file ? VSIFReadL(head.data(), 1, head.size(), file.get()) : 0);
+  return head.find(fmt::format("urn:ogc:def:crs:{}:", authority)) != std::string::npos ||
+         head.find(fmt::format("www.opengis.net/def/crs/{}/", authority)) != std::string::npos;
+}
+
 }  // namespace
 
 GdalDataset open_vector(const std::string& path, const std::string& thing, const std::string& hint) {
@@ -37,6 +58,11 @@ GdalDataset open_vector(const std::string& path, const std::string& thing, const
       GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (dataset) {
     refuse_recursive_views(*dataset, path);
+    if (keeps_latitude_first(*dataset, path)) {
+      const char* const options[] = {"SWAP_COORDINATES=YES", nullptr};
+      dataset.reset(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, nullptr, options));
+      if (!dataset) throw Error(ErrorCode::input, "this GML file cannot be read again", path, hint);
+    }
     return dataset;
   }
   VSIStatBufL status;

@@ -178,6 +178,9 @@ pair_by_type(const ScoredTables& found, const ScoredTables& truth, const std::st
     if (const auto pair = pairs.find(as); pair != pairs.end())
       pair->second.first.insert(pair->second.first.end(), things.begin(), things.end());
   }
+  // A map has an empty table for each type that it does not hold.
+  std::erase_if(pairs,
+                [](const auto& pair) { return pair.second.first.empty() && pair.second.second.empty(); });
   return pairs;
 }
 

@@ -72,7 +72,7 @@ void check_request(const StacRequest& request) {
 StacResult make_stac(const StacRequest& request, const Callbacks& callbacks) {
   check_request(request);
   if (fs::path(request.output).extension() == ".json") {
-    RecordFacts facts = facts_of(request, request.files.front(), fs::path(request.output).parent_path());
+    RecordFacts facts = facts_of(request, request.files.front(), fs::absolute(request.output).parent_path());
     facts.description = request.description;
     write_file(request.output, exporters::stac_item(facts));
     callbacks.summary(fmt::format("{}: item {}\n", request.output, facts.id));

@@ -87,6 +87,14 @@ TEST_F(Evaluate, TrueCoordinatesThatAreNoMetresNeedTheMap) {
   }
 }
 
+TEST_F(Evaluate, TypesThatNeitherMapHoldsAreLeftOut) {
+  const std::string table = file("rocks.csv", "x,y,radius\n1,2,1\n"), map = folder_ / "rocks.gpkg";
+  ASSERT_EQ(waymark({"import", table, "-o", map, "--type", "rock", "--map-crs", "local"}).code, 0);
+  const Outcome said = waymark({"evaluate", "landmarks", map, "--truth", map});
+  EXPECT_THAT(said.out,
+              AllOf(testing::StartsWith("rock\n"), Not(HasSubstr("crater")), Not(HasSubstr("wall"))));
+}
+
 TEST_F(Evaluate, TimesNoTrackHasAreReportedAsTimes) {
   const std::string track = file("track.csv", "t,x,y,yaw\n0,0,0,0\n1e300,1,0,0\n");
   EXPECT_THAT(waymark({"evaluate", "track", track, "--truth", track}).err,

@@ -288,5 +288,18 @@ TEST_F(Import, OrderOfRowsDoesNotMatter) {
   EXPECT_EQ(waymark({"query", map_, "--format", "csv"}).out, once);
 }
 
+TEST_F(Import, GmlOfAnotherBodyKeepsItsAxes) {
+  ASSERT_EQ(import("lon,lat,diam_km\n10.5,-20.25,5.5\n179.9,-21,1.5\n",
+                   {"--type", "crater", "--map-crs", "IAU_2015:30100"})
+                .code,
+            0);
+  const std::string gml = folder_ / "craters.gml", back = folder_ / "back.gpkg";
+  ASSERT_EQ(waymark({"export", map_, gml}).code, 0);
+  EXPECT_THAT(text_of(gml), HasSubstr("<gml:pos>-20.25 10.5"));  // the urn's order: latitude, longitude
+  const Outcome read = waymark({"import", gml, "--type", "crater", "-o", back});
+  ASSERT_EQ(read.code, 0) << read.err;
+  EXPECT_EQ(waymark({"query", back, "--format", "csv"}).out, waymark({"query", map_, "--format", "csv"}).out);
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -100,6 +100,15 @@ TEST_F(ViewCommand, WritesOnePageAndSaysHowLargeItIs) {
   EXPECT_THAT(page, HasSubstr(R"("name":"truth","truth":true)"));
 }
 
+TEST_F(ViewCommand, LandmarksBelowTheHorizonOfTheMiddleAreNamed) {
+  const std::string table = folder_ / "moon.csv", map = folder_ / "moon.gpkg";
+  write_text(table, "lon,lat,diam_km\n-60,0,5\n60,0,5\n");
+  ASSERT_EQ(waymark({"import", table, "--type", "crater", "--map-crs", "IAU_2015:30100", "-o", map}).code, 0);
+  const Outcome said = waymark({"view", map, "-o", page_});
+  EXPECT_EQ(said.code, 1);
+  EXPECT_THAT(said.err, HasSubstr("all landmarks lie more than 434 km from the middle of the map"));
+}
+
 TEST_F(ViewCommand, TheBrowserDrawsTheMapAndAClickChoosesALandmark) {
   ASSERT_EQ(view({"--log", folder_ / "log.jsonl", "--track", folder_ / "ekf.csv"}).code, 0);
   const std::string a = folder_ / "a.png", b = folder_ / "b.png", c = folder_ / "c.png";
