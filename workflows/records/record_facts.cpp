@@ -107,11 +107,29 @@ std::string media_type(GDALDataset& raster) {
   return type ? type : "application/octet-stream";
 }
 
+/// Returns the extent of a map. In degrees across the antimeridian, longitudes are those from 0 to 360.
+std::optional<MapBox> extent_of(const geodb::MapStore& store, const std::string& map) {
+  std::optional<MapBox> box = exporters::map_extent(map);
+  if (!box || store.crs().kind() != CrsKind::geographic || box->max_x - box->min_x <= 180) return box;
+  double west = 360, east = 0;
+  const auto extend = [&](double x) {
+    const double eastern = x - 360 * std::floor(x / 360);
+    west = std::min(west, eastern), east = std::max(east, eastern);
+  };
+  for (const std::string& type : store.types().names())
+    store.visit(type, [&](Landmark&& landmark) { extend(landmark.position.xyz.x()); });
+  for (const geodb::ImageRecord& image : store.images())
+    for (const geodb::ImageRecord::Ring& ring : image.footprint)
+      for (const Eigen::Vector2d& corner : ring) extend(corner.x());
+  if (east - west < box->max_x - box->min_x) box->min_x = west, box->max_x = east;
+  return box;
+}
+
 }  // namespace
 
 RecordFacts facts_of_map(const std::string& map) {
   const geodb::MapStore store = geodb::MapStore::open(map);
-  RecordFacts facts{.id = fs::path(map).stem(), .crs = store.crs(), .box = exporters::map_extent(map)};
+  RecordFacts facts{.id = fs::path(map).stem(), .crs = store.crs(), .box = extent_of(store, map)};
   for (const std::string& type : store.types().names()) facts.landmarks.emplace_back(type, store.count(type));
   add_images(facts, store.images());
   const std::vector<geodb::RunRecord> runs = store.runs();

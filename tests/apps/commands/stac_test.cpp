@@ -89,6 +89,20 @@ TEST_F(Stac, ItemOfAMap) {
   EXPECT_EQ("1220" + bash("sha256sum < " + map).out.substr(0, 64), asset["file:checksum"]);
 }
 
+TEST_F(Stac, AMapAcrossTheAntimeridianIsDivided) {
+  write_text(folder_.path() / "far.csv", "x,y,radius,height\n179.9,20,1,1\n-179.8,21,1,1\n");
+  const std::string map = folder_ / "far.gpkg";
+  ASSERT_EQ(
+      waymark({"import", folder_ / "far.csv", "-o", map, "--type", "rock", "--map-crs", "EPSG:4326"}).code,
+      0);
+  ASSERT_EQ(waymark({"stac", map, "-o", folder_ / "item.json"}).code, 0);
+  const Json item = record("item.json");
+  expect_valid_item(item);
+  EXPECT_NEAR(item["bbox"][0], 179.9, 1e-9);
+  EXPECT_NEAR(item["bbox"][2], -179.8, 1e-9);
+  EXPECT_EQ(item["geometry"]["type"], "MultiPolygon");
+}
+
 TEST_F(Stac, LocalMapsHaveNoPlaceOnABody) {
   ASSERT_EQ(waymark({"stac", rocks("local"), "-o", folder_ / "item.json"}).code, 0);
   const Json item = record("item.json");
