@@ -19,9 +19,20 @@ Eigen::Matrix3d rotate_axes(const Eigen::Matrix3d& covariance, double rotation) 
   return rotated;
 }
 
+bool depends_on_axes(const Eigen::Matrix3d& covariance, const FeatureSet& features,
+                     std::span<const FeatureSpec> specs) {
+  const Eigen::Matrix3d& c = covariance;
+  const auto differs = [](double a, double b) { return a < b || a > b; };  // false for unknown numbers
+  if (differs(c(0, 0), c(1, 1)) || differs(c(0, 1), 0) || differs(c(0, 2), 0) || differs(c(1, 2), 0))
+    return true;
+  for (std::size_t i = 0; i < std::min(features.size(), specs.size()); ++i)
+    if (features[i].known() && is_angle(specs[i].scale)) return true;
+  return false;
+}
+
 void rotate_axes(FeatureSet& features, std::span<const FeatureSpec> specs, double rotation) {
   for (std::size_t i = 0; i < std::min(features.size(), specs.size()); ++i)
-    if (features[i].known() && (specs[i].scale == Scale::axis || specs[i].scale == Scale::direction))
+    if (features[i].known() && is_angle(specs[i].scale))
       features[i].value = difference(features[i].value, rotation, specs[i].scale);
 }
 

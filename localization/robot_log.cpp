@@ -7,7 +7,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
 
 namespace waymark::localization {

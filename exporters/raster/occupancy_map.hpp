@@ -15,8 +15,8 @@ struct OccupancyBands {
 /// Writes a raster as a map of Nav2's map_server: a YAML file, and a PGM beside it with the same stem.
 /// - Mode `raw`. Cells of the lethal class are 100, those of the unknown class 255, others their probability
 ///   (0 to 1) in per cent, at most 99. By default, costmaps of Nav2 take 100 alone for an obstacle.
-/// - Positions are metres: those of the raster's CRS, which a comment names with the factor if it has other
-/// units.
+/// - Positions are those of the raster's CRS in metres. A comment names the CRS, and the factor of another
+///   unit.
 /// - Reads a row at a time. Throws Error{output}, and Error{input} for cells that are not square.
 void write_occupancy_map(const std::filesystem::path& yaml, const std::filesystem::path& raster,
                          const OccupancyBands& bands, const Crs& crs);

@@ -67,24 +67,23 @@ class SubsetReader {
   };
   Count count(TypeId type) const {
     Count all;
-    if (!transform_ && !chosen_.inside) return {map_->count(types_[type].name), 0};
-    for (std::size_t part = 0; part < parts(); ++part) {
-      if (ranges_[part].first != type) continue;
-      const Reprojected found = landmarks(part);
-      all.kept += static_cast<std::int64_t>(found.landmarks.size()), all.lost += found.lost;
-    }
+    if (!leaves_out()) return {map_->count(types_[type].name), 0};
+    for (std::size_t part = 0; part < parts(); ++part)
+      if (ranges_[part].first == type)
+        visit_chosen(part, [&](const Landmark&, bool has_place) { ++(has_place ? all.kept : all.lost); });
     return all;
   }
 
   std::vector<Observation> evidence(std::size_t part) const {
     std::vector<Observation> found;
     const auto& [id, rows] = ranges_[part];
-    const bool leaves_out = transform_ || chosen_.inside;
     std::unordered_set<std::string> uids;  // of the landmarks that are kept
-    if (leaves_out)
-      for (const Landmark& landmark : landmarks(part).landmarks) uids.insert(landmark.uid);
+    if (leaves_out())
+      visit_chosen(part, [&](const Landmark& landmark, bool has_place) {
+        if (has_place) uids.insert(landmark.uid);
+      });
     map_->visit_observations(types_[id].name, rows, [&](Observation&& seen) {
-      if ((!leaves_out || uids.contains(seen.landmark_uid)) && keep(seen)) found.push_back(std::move(seen));
+      if ((!leaves_out() || uids.contains(seen.landmark_uid)) && keep(seen)) found.push_back(std::move(seen));
     });
     return found;
   }
@@ -107,6 +106,20 @@ class SubsetReader {
  private:
   static constexpr std::int64_t kRows = 10'000;  // of a part
 
+  bool leaves_out() const { return transform_ || chosen_.inside; }
+
+  /// Visits the chosen landmarks of a part with whether each has a position in the CRS.
+  template <class Visit>
+  void visit_chosen(std::size_t part, const Visit& visit) const {
+    const auto& [id, rows] = ranges_[part];
+    map_->visit(types_[id].name, rows, [&](Landmark&& landmark) {
+      if (!is_inside(landmark)) return;
+      const Eigen::Vector3d& at = landmark.position.xyz;
+      const auto there = transform_ ? (*transform_)(at.x(), at.y()) : CrsTransform::XY{at.x(), at.y()};
+      visit(landmark, std::isfinite(there.x) && std::isfinite(there.y));
+    });
+  }
+
   /// Takes a landmark or an observation in the CRS of the map.
   template <class Item>
   bool is_inside(const Item& item) const {
@@ -120,7 +133,7 @@ class SubsetReader {
     if (transform_) {
       const Eigen::Vector3d& at = seen.position.xyz;
       rotate_axes(seen, types_[seen.type].features,
-                  axes_rotation(*transform_, map_->crs(), crs_, at.x(), at.y()));
+                  [&] { return axes_rotation(*transform_, map_->crs(), crs_, at.x(), at.y()); });
       const auto there = (*transform_)(at.x(), at.y());
       seen.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
     }

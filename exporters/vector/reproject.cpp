@@ -48,7 +48,7 @@ Reprojected reproject(std::vector<Landmark> landmarks, const LandmarkType& type,
   const auto pairs = position_pairs(type);
   for (Landmark& landmark : landmarks) {
     const Eigen::Vector3d& at = landmark.position.xyz;
-    rotate_axes(landmark, type.features, axes_rotation(transform, from, to, at.x(), at.y()));
+    rotate_axes(landmark, type.features, [&] { return axes_rotation(transform, from, to, at.x(), at.y()); });
     const auto there = transform(at.x(), at.y());
     landmark.position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
     for (const Pair& pair : pairs) reproject(landmark.attributes, pair, transform);

@@ -20,7 +20,7 @@
 #include "core/text_file.hpp"
 #include "exporters/gdal_messages.hpp"
 #include "exporters/vector/track_formats.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "geodb/replace_map.hpp"
 

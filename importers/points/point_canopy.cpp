@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/median.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/points/canopy_terrain.hpp"
 #include "importers/points/las_catalogue.hpp"
@@ -211,9 +212,7 @@ class PointCanopy final : public ImportedCanopy {
       for (const auto& [square, height] : lowest) above.push_back(height);
     }
     if (above.size() < kMinPoints) return std::nan("");
-    const auto middle = above.begin() + static_cast<std::ptrdiff_t>(above.size() / 2);
-    std::ranges::nth_element(above, middle);
-    return *middle;
+    return median(std::move(above));
   }
 
   void set_height_unit() {

@@ -134,7 +134,7 @@ class CityJsonElements final : public ElementSource {
     if (!coarsest) return;
     const JsonValue geometry = geometries[*coarsest], boundaries = geometry["boundaries"];
     const std::string type = geometry["type"].text();
-    if (type == "MultiPoint" || type == "GeometryInstance") {  // of which the point of reference
+    if (type == "MultiPoint" || type == "GeometryInstance") {  // an instance has its point of reference
       for (const Eigen::Vector3d& v : vertices_of(boundaries)) parts.push_back({Kind::point, {v}});
     } else if (type == "MultiLineString") {
       for (std::size_t i = 0; i < boundaries.size(); ++i)

@@ -66,7 +66,7 @@ std::string TablePositions::transform_to_map(Landmark& landmark, std::span<const
                                              AngleReference angles) {
   const Point<MapCrs> of_table = landmark.position;
   std::string reason = transform_to_map(landmark.position);
-  if (reason.empty()) rotate_axes(landmark, specs, rotation_to_map(of_table, angles));
+  if (reason.empty()) rotate_axes(landmark, specs, [&] { return rotation_to_map(of_table, angles); });
   return reason;
 }
 

@@ -33,8 +33,8 @@ void refuse_recursive_views(GDALDataset& dataset, const std::string& path) {
                 "remove the view, or copy its rows into a table");
 }
 
-/// Tells if positions of a GML file are latitude and longitude that GDAL does not exchange. It does so for
-/// codes of EPSG, but the axes of any authority's urn have the authority's order (OGC 07-036r1, 09-048r5).
+/// Returns whether positions of a GML file are latitude and longitude that GDAL does not exchange. GDAL
+/// exchanges those of EPSG codes; the axes of any authority's urn have its order (OGC 07-036r1, 09-048r5).
 bool keeps_latitude_first(GDALDataset& dataset, const std::string& path) {
   if (!EQUAL(dataset.GetDriverName(), "GML") || dataset.GetLayerCount() == 0) return false;
   const OGRSpatialReference* reference = dataset.GetLayer(0)->GetSpatialRef();

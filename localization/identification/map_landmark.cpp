@@ -7,7 +7,7 @@
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "core/rotate_axes.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -47,7 +47,8 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   Point<MapCrs> ground = landmark.position;
   if (!std::isfinite(ground.xyz.z())) ground.xyz.z() = 0;
   robots.at = frame.map_frame_from_crs(ground).xyz.head<2>();
-  const double rotation = -grid_rotation(frame, robots.at);
+  const bool depends = depends_on_axes(landmark.covariance, landmark.features, type.features);
+  const double rotation = depends ? -grid_rotation(frame, robots.at) : 0;
   robots.covariance = usable(rotate_axes(landmark.covariance, rotation));
   robots.type = landmark.type;
   const double quality = (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark))

@@ -36,8 +36,8 @@ CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, doub
 inline constexpr std::int64_t kTerrainMargin = 16;
 
 /// Computes the same over a terrain model in place of ground points; `surface` as in LaserPoints.
-/// - `terrain`: elevations, metres, on the cells of the frame and kTerrainMargin more on each side; NaN:
-/// unknown.
+/// - `terrain`: elevations in metres on the cells of the frame and kTerrainMargin more on each side; NaN if
+///   unknown.
 /// - Heights over unknown terrain are NaN.
 CanopyBlock canopy_block(std::span<const Eigen::Vector3d> surface, const Grid<float>& terrain,
                          const CellFrame& frame, double spacing);

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "geo/convex_hull.hpp"
+
 namespace waymark::pipeline {
 namespace {
 
@@ -61,23 +63,6 @@ double distance_to_segment(const Place& a, const Place& b, const Place& place) {
   const double length2 = along.squaredNorm();
   const double t = length2 > 0 ? std::clamp((place - a).dot(along) / length2, 0.0, 1.0) : 0;
   return (a + t * along - place).norm();
-}
-
-/// Andrew's monotone chain, counter-clockwise, without corners on edges.
-Ring convex_hull(Ring places) {
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
-  Ring hull;
-  const auto extend = [&](const Place& place, std::size_t min_size) {
-    while (hull.size() >= min_size && !(cross(hull.back() - hull[hull.size() - 2], place - hull.back()) > 0))
-      hull.pop_back();
-    hull.push_back(place);
-  };
-  for (const Place& place : places) extend(place, 2);
-  const std::size_t lower = hull.size();
-  for (auto at = places.rbegin() + 1; at < places.rend(); ++at) extend(*at, lower + 1);
-  if (!hull.empty()) hull.pop_back();
-  return hull;
 }
 
 }  // namespace

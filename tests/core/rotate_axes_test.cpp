@@ -36,6 +36,35 @@ TEST(RotatedAxes, KeepWhatIsUnknown) {
   EXPECT_TRUE(std::isnan(rotate_axes(Eigen::Matrix3d::Constant(std::nan("")), 1)(0, 0)));
 }
 
+TEST(RotatedAxes, AreComputedOnlyWhereSomethingDependsOnThem) {
+  const std::vector<FeatureSpec> specs{
+      {.name = "direction", .unit = "rad", .scale = Scale::direction, .summary = ""}};
+  const Eigen::Matrix3d round = Eigen::Vector3d(4, 4, 9).asDiagonal();
+  Eigen::Matrix3d oblique = round;
+  oblique(0, 1) = oblique(1, 0) = 1;
+  const FeatureSet unknown(1), known{{0.3, 0, 1}};
+  EXPECT_FALSE(depends_on_axes(round, unknown, specs));
+  EXPECT_FALSE(depends_on_axes(Eigen::Matrix3d::Constant(std::nan("")), unknown, specs));
+  EXPECT_TRUE(depends_on_axes(oblique, unknown, specs));
+  EXPECT_TRUE(depends_on_axes(Eigen::Matrix3d(Eigen::Vector3d(4, 1, 9).asDiagonal()), unknown, specs));
+  EXPECT_TRUE(depends_on_axes(round, known, specs));
+
+  int calls = 0;
+  const auto rotation = [&] {
+    ++calls;
+    return kQuarter;
+  };
+  Observation seen;
+  seen.covariance = round;
+  seen.features = unknown;
+  rotate_axes(seen, specs, rotation);
+  EXPECT_EQ(calls, 0);
+  seen.features = known;
+  rotate_axes(seen, specs, rotation);
+  EXPECT_EQ(calls, 1);
+  EXPECT_NEAR(seen.features[0].value, 0.3 - kQuarter, 1e-12);
+}
+
 /// An axis to the northeast of a map whose x axis is turned to its y axis.
 TEST(RotatedAxes, ChangeDirectionsAndAxesButNoOtherFeature) {
   const std::vector<FeatureSpec> specs{

@@ -10,6 +10,7 @@
 #include "importers/cameras/ground_control.hpp"
 #include "importers/images/image.hpp"
 #include "importers/images/list_images.hpp"
+#include "importers/images/photo_metadata.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/rasters/dem.hpp"
@@ -60,6 +61,11 @@ void read_dem(const std::string& path) {
 void read_image(const std::string& path) {
   const auto listed = importers::list_images({.files = {path}, .import = {.crs = "EPSG:32633"}});
   if (listed.images.at(0).columns == 0) throw Error(ErrorCode::input, listed.warnings.at(0), path);
+}
+
+void read_photo(const std::string& path) {
+  const importers::GdalDataset picture = importers::open_raster(path);
+  importers::read_photo_metadata(*picture, path);
 }
 
 void read_points(const std::string& path) {
@@ -144,6 +150,7 @@ std::vector<Reader> all_readers() {
       {"dem_tiff", "dem.tif", read_dem},
       {"dem_text", "dem.asc", read_dem},
       {"image", "a.png", read_image},
+      {"photo", "a.tif", read_photo},
       {"las", "points.las", read_points},
       {"laz", "points.laz", read_points},
       {"copc", "points.copc.laz", read_points},

@@ -14,7 +14,7 @@
 #include "core/json_text.hpp"
 #include "core/landmark.hpp"
 #include "core/rotate_axes.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geodb/update_map.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"

@@ -12,7 +12,7 @@
 #include <set>
 
 #include "core/rotate_axes.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
@@ -95,7 +95,7 @@ void place_in_crs(Placed& one, const LocalFrame& frame, const TypeRegistry& type
   const Eigen::Vector2d at = one.position.xyz.template head<2>();
   one.position.xyz.template head<2>() =
       frame.crs_from_map_frame({{at.x(), at.y(), 0}}).xyz.template head<2>();
-  rotate_axes(one, types[one.type].features, grid_rotation(frame, at));
+  rotate_axes(one, types[one.type].features, [&] { return grid_rotation(frame, at); });
 }
 
 /// The uids are then those of the positions in the CRS.

@@ -6,8 +6,10 @@
 #include <limits>
 #include <unordered_map>
 
+#include "geo/convex_hull.hpp"
 #include "pipeline/fusion/association/map_plane.hpp"
 #include "pipeline/fusion/association/merging.hpp"
+#include "pipeline/fusion/projection/footprint.hpp"
 #include "pipeline/fusion/valuation/landmark_fusion.hpp"
 
 namespace waymark::workflows {
@@ -15,39 +17,6 @@ namespace {
 
 using Outline = std::vector<Eigen::Vector2d>;
 constexpr double kAsSharp = 1.1;  // as eq. 4's test of resolutions (docs/methods/qualities.md)
-
-double turn(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
-  return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
-}
-
-/// Returns the convex hull, counter-clockwise (Andrew 1979).
-Outline convex_hull(Outline points) {
-  std::ranges::sort(points, [](const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-    return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y();
-  });
-  Outline hull;
-  const auto add = [&](const Eigen::Vector2d& point, std::size_t fixed) {
-    while (hull.size() >= fixed + 2 && !(turn(hull[hull.size() - 2], hull.back(), point) > 0))
-      hull.pop_back();
-    hull.push_back(point);
-  };
-  for (const Eigen::Vector2d& point : points) add(point, 0);
-  const std::size_t lower = hull.empty() ? 0 : hull.size() - 1;
-  for (std::size_t i = points.size(); i-- > 0;) add(points[i], lower);
-  if (hull.size() > 1) hull.pop_back();
-  return hull;
-}
-
-bool is_inside(const Eigen::Vector2d& point, const Outline& ring) {
-  bool inside = false;
-  for (std::size_t i = 0, j = ring.size() - 1; i < ring.size(); j = i++) {
-    const Eigen::Vector2d &a = ring[i], &b = ring[j];
-    if ((a.y() > point.y()) != (b.y() > point.y()) &&
-        point.x() < a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x()))
-      inside = !inside;
-  }
-  return inside;
-}
 
 /// What a map shows, in metres about a position.
 class Coverage {
@@ -73,7 +42,7 @@ class Coverage {
   bool covers(const Eigen::Vector2d& position, double coarsest_gsd) const {
     const Eigen::Vector2d at = metres(position);
     return std::ranges::any_of(views_, [&](const View& view) {
-      return view.gsd <= kAsSharp * coarsest_gsd && view.box.contains(at) && is_inside(at, view.ring);
+      return view.gsd <= kAsSharp * coarsest_gsd && view.box.contains(at) && pipeline::inside(view.ring, at);
     });
   }
 

@@ -30,9 +30,9 @@ struct MergeResult {
 /// - Of landmarks that identify themselves and disagree in position that of the later map counts, with a
 ///   warning: of the second map if changes are requested, else of the map with the latest run.
 /// - Requested changes are the layer `change` of the result. The order of the maps matters to them.
-/// - Throws Error{usage} for fewer than two maps, changes of more than two, a `max_move` outside [0, 1e6],
-/// maps of different CRSs, or a result that is one of the
-///   maps; Error{input} for maps with errors or types that differ.
+/// - Throws Error{usage} for fewer than two maps, maps of different CRSs, or a result that is one of them.
+/// - Throws Error{usage} for changes of more than two maps, or a `max_move` outside [0, 1e6].
+/// - Throws Error{input} for maps with errors or types that differ.
 MergeResult merge_maps(const MergeRequest& request, const Callbacks& callbacks = {});
 
 }  // namespace waymark::workflows

@@ -74,7 +74,8 @@ SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const plann
     map.visit(type.name, [&](Landmark&& landmark) {
       if (transform) {
         const Eigen::Vector3d own = landmark.position.xyz;
-        rotate_axes(landmark, type.features, axes_rotation(*transform, map.crs(), dem, own.x(), own.y()));
+        rotate_axes(landmark, type.features,
+                    [&] { return axes_rotation(*transform, map.crs(), dem, own.x(), own.y()); });
         const auto at = (*transform)(own.x(), own.y());
         if (!std::isfinite(at.x)) return;
         landmark.position.xyz.x() = at.x, landmark.position.xyz.y() = at.y;

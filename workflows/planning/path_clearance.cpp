@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "core/error.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "importers/rasters/dem.hpp"
 #include "planning/clearance.hpp"

@@ -15,7 +15,7 @@
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/rotate_axes.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"

@@ -8,7 +8,7 @@
 
 #include "core/error.hpp"
 #include "core/units.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "importers/tables/area_of_interest.hpp"
 #include "workflows/parse_number.hpp"

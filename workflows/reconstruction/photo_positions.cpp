@@ -7,16 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "core/median.hpp"
+
 namespace waymark::workflows {
-namespace {
-
-double median_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-}  // namespace
 
 double degrees_apart(const LonLat& a, const LonLat& b) {
   const double shrink = std::cos(std::clamp(b.lat, -90.0, 90.0) * std::numbers::pi / 180);
@@ -28,7 +21,7 @@ std::optional<LonLat> middle_of_positions(const Photos& photos) {
   for (const Photo& photo : photos.photos)
     if (const auto& at = photo.metadata.position) lons.push_back(at->lon), lats.push_back(at->lat);
   if (lons.empty()) return std::nullopt;
-  return LonLat{median_of(std::move(lons)), median_of(std::move(lats))};
+  return LonLat{median(std::move(lons)), median(std::move(lats))};
 }
 
 std::string cause_of_distance(const LonLat& stated, const LonLat& truth) {

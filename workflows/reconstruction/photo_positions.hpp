@@ -2,13 +2,9 @@
 #pragma once
 #include <optional>
 #include <string>
+#include "geo/body.hpp"
 #include "workflows/reconstruction/read_photos.hpp"
 namespace waymark::workflows {
-
-/// Position on a body, degrees.
-struct LonLat {
-  double lon = 0, lat = 0;
-};
 
 /// Degrees between positions of one flight at most: no flight is that long.
 inline constexpr double kLongestFlight = 1;

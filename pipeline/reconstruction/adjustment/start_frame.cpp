@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/median.hpp"
 #include "core/solve.hpp"
 #include "pipeline/reconstruction/adjustment/robust_similarity.hpp"
 #include "pipeline/reconstruction/adjustment/triangulate.hpp"
@@ -34,18 +35,16 @@ bool in_component(const Reconstruction& scene, std::size_t image, std::size_t co
 double extent_of(const std::vector<NamedPair>& pairs) {
   constexpr double kFar = 10;
   if (pairs.empty()) return 0;
-  const auto half = static_cast<std::ptrdiff_t>(pairs.size() / 2);
+  const auto median_over = [&](const auto& value) {
+    std::vector<double> values(pairs.size());
+    std::ranges::transform(pairs, values.begin(), value);
+    return median(std::move(values));
+  };
   Eigen::Vector3d middle;
-  std::vector<double> values(pairs.size());
-  for (int axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < pairs.size(); ++i) values[i] = pairs[i].pair.map[axis];
-    std::ranges::nth_element(values, values.begin() + half);
-    middle[axis] = values[pairs.size() / 2];
-  }
+  for (int axis = 0; axis < 3; ++axis)
+    middle[axis] = median_over([=](const NamedPair& p) { return p.pair.map[axis]; });
   const auto distance = [&](const NamedPair& p) { return (p.pair.map - middle).norm(); };
-  std::ranges::transform(pairs, values.begin(), distance);
-  std::ranges::nth_element(values, values.begin() + half);
-  const double limit = kFar * values[pairs.size() / 2];
+  const double limit = kFar * median_over(distance);
   double extent = 0;
   for (const NamedPair& a : pairs)
     for (const NamedPair& b : pairs)

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 
 namespace waymark::test {
 using namespace localization;

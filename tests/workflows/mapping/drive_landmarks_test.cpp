@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "core/rotate_axes.hpp"
-#include "geo/grid_rotation.hpp"
+#include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "tests/localization/made_rooms.hpp"

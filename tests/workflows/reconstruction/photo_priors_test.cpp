@@ -55,7 +55,7 @@ TEST(PhotoPriors, MirroredPicturesHaveNoAttitude) {
   for (const int mirrored : {2, 4, 5, 7}) EXPECT_EQ(stored_axes(mirrored).columns.norm(), 0) << mirrored;
 }
 
-// Five pictures 30 m apart, of which `liar` states another position.
+// Five pictures 30 m apart. `liar` states another position.
 Photos row_of_pictures(std::size_t liar, const importers::PhotoPosition& stated) {
   Photos photos;
   for (std::size_t i = 0; i < 5; ++i) {
