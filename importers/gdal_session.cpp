@@ -73,12 +73,19 @@ void GdalClose::operator()(GDALDataset* dataset) const {
 GdalListener::GdalListener() {
   CPLPushErrorHandlerEx(
       [](CPLErr level, CPLErrorNum, const char* text) {
-        auto& first = static_cast<GdalListener*>(CPLGetErrorHandlerUserData())->first_error_;
-        if (level >= CE_Failure && first.empty()) first = text;
+        static_cast<GdalListener*>(CPLGetErrorHandlerUserData())->hear(level, text);
       },
       this);
   static std::once_flag registered;
   std::call_once(registered, GDALAllRegister);
+}
+
+void GdalListener::hear(int level, std::string_view text) {
+  // libjpeg's words for a file that ends early, and for a segment of one that does; pixels after it are grey.
+  const bool ends_early = text.find("remature end of") != text.npos && text.find("libjpeg") != text.npos;
+  pixels_are_missing_ = pixels_are_missing_ || ends_early;
+  if ((level >= CE_Failure || ends_early) && first_error_.empty())
+    first_error_ = text.substr(0, text.find(" (this warning"));
 }
 
 GdalListener::~GdalListener() {

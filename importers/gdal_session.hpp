@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 class GDALDataset;
 namespace waymark::importers {
 
@@ -23,8 +24,14 @@ class GdalListener {
   /// Returns the first error, which names the cause; empty if there was none. Removes a leading `path`.
   std::string error_about(const std::string& path) const;
 
+  /// True if a decoder made up pixels that the file lacks. GDAL only warns of a JPEG that ends early.
+  bool pixels_are_missing() const { return pixels_are_missing_; }
+
  private:
+  void hear(int level, std::string_view text);
+
   std::string first_error_;
+  bool pixels_are_missing_ = false;
 };
 
 /// Opens a raster for reading; /vsistdin/ any number of times. Throws Error{input} if the file is missing,

@@ -80,7 +80,8 @@ void read_band(GDALRasterBand& band, const Window& window, GDALDataType type, vo
   if (band.RasterIO(GF_Read, static_cast<int>(window.column), static_cast<int>(window.row),
                     static_cast<int>(window.columns), static_cast<int>(window.rows), into,
                     static_cast<int>(window.columns), static_cast<int>(window.rows), type, 0, 0,
-                    nullptr) != CE_None)
+                    nullptr) != CE_None ||
+      gdal.pixels_are_missing())
     throw Error(ErrorCode::input,
                 fmt::format("rows {} to {} of the image cannot be read: {}", window.row, window.end_row() - 1,
                             gdal.error_about(path)),

@@ -183,6 +183,29 @@ TEST(Image, TruncatedFilesFailWhenRead) {
   EXPECT_THAT(message_of([&] { image->read({0, 0, 500, 500}); }), HasSubstr("damaged"));
 }
 
+// GDAL fills the rest of a JPEG that ends early with grey, and only warns.
+TEST(Image, TruncatedJpegsFailWhenReadWhateverTheirKind) {
+  Grid<double> noise(400, 300);
+  for (std::size_t i = 0; i < noise.cells().size(); ++i)
+    noise.cells()[i] = static_cast<double>((i * 2654435761U >> 8) % 256);
+  const std::string source = grey("noise.tif", GDT_Byte, noise);
+  const std::unique_ptr<GDALDataset> from(GDALDataset::Open(source.c_str()));
+  for (const char* progressive : {"PROGRESSIVE=NO", "PROGRESSIVE=YES"}) {
+    const auto path = std::filesystem::path(write_text("x", "")).replace_filename("cut.jpg");
+    const char* const options[] = {progressive, nullptr};
+    GDALClose(GetGDALDriverManager()->GetDriverByName("JPEG")->CreateCopy(path.c_str(), from.get(), FALSE,
+                                                                          options, nullptr, nullptr));
+    EXPECT_FALSE(std::isnan(import_image(path)->read({0, 0, 400, 300})(399, 299))) << "it is sound";
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) / 3);
+    const auto image = import_image(path);
+    EXPECT_THAT(message_of([&] {
+                  image->read({0, 0, 400, 300});
+                }),
+                AllOf(HasSubstr("damaged"), HasSubstr("Premature end"), HasSubstr("cut.jpg")))
+        << progressive;
+  }
+}
+
 TEST(ImageSet, OnDiskIsARecipe) {
   PosedCamera view;
   view.camera = {.columns = 5,
