@@ -72,4 +72,11 @@ std::string unusual_ground_warning(const LightCoherence& seen) {
       100 * seen.fraction(), seen.rocks, 100 * seen.real_fraction());
 }
 
+std::string shaded_ground_warning(const ShadedGround& seen) {
+  return fmt::format(
+      "{:.0f} % of the pixels lie in shadow: rocks there cast none and are not found, those beside it are "
+      "found less often; a higher sun would show them",
+      100 * seen.fraction());
+}
+
 }  // namespace waymark::pipeline

@@ -5,6 +5,7 @@
 
 #include "geo/image_source.hpp"
 #include "pipeline/rocks/light_coherence.hpp"
+#include "pipeline/rocks/shaded_ground.hpp"
 #include "pipeline/vision/sun_angle.hpp"
 namespace waymark::pipeline {
 
@@ -19,5 +20,8 @@ std::optional<Radians> sun_angle_of_ground(const Pixels& image);
 
 /// Returns the warning about ground on which the detector of rocks cannot be trusted.
 std::string unusual_ground_warning(const LightCoherence& seen);
+
+/// Returns the warning about an image of which much lies in shadow.
+std::string shaded_ground_warning(const ShadedGround& seen);
 
 }  // namespace waymark::pipeline

@@ -8,6 +8,7 @@
 #include "geo/image_source.hpp"
 #include "pipeline/rocks/light_coherence.hpp"
 #include "pipeline/rocks/relief_displacement.hpp"
+#include "pipeline/rocks/shaded_ground.hpp"
 #include "pipeline/vision/sun_angle.hpp"
 namespace waymark::pipeline {
 
@@ -42,6 +43,7 @@ struct RocksFound {
   std::vector<Detection> rocks;
   std::optional<Radians> light;  ///< direction that was used; unset: unknown, so no rocks were sought
   LightCoherence coherence;      ///< how many are lit from there; empty for the method `classic`
+  ShadedGround shaded = {};      ///< what of the image lies in shadow; empty for the method `classic`
 };
 
 /// Returns the rocks of an image by descending confidence (ties by row, then column).

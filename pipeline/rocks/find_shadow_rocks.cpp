@@ -226,10 +226,11 @@ std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& li
   return judged;
 }
 
-std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle) {
+ScoredImage score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle) {
   const LightFrame light = LightFrame::of(sun_angle);
   const Radians elevation = search.sun_elevation.value_or(kDefaultElevation);
-  std::vector<ScoredRock> all;
+  ScoredImage scored;
+  std::vector<ScoredRock>& all = scored.spots;
   std::optional<float> umbra;
   std::optional<RockTable> table;
   Pixels coarse;
@@ -243,6 +244,7 @@ std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& sear
     const auto map = map_shadows(pixels, kTile, umbra);
     if (!map) break;
     umbra = map->umbra;
+    if (scale <= 1) scored.shaded = map->shaded;
     // The centre of a coarse pixel lies between the fine ones that it covers.
     std::optional<ReliefDisplacement> displacement = search.displacement;
     if (displacement)
@@ -260,13 +262,14 @@ std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& sear
         std::min(pixels.columns(), pixels.rows()) < kMinTiles * kTile)
       break;
   }
-  return all;
+  return scored;
 }
 
 RocksFound find_shadow_rocks(const Pixels& image, const RockSearch& search, Radians sun_angle) {
   const LightFrame light = LightFrame::of(sun_angle);
-  std::vector<ScoredRock> scored = score_scales(image, search, sun_angle);
-  RocksFound found{.rocks = {}, .light = sun_angle, .coherence = light_coherence(scored, light)};
+  auto [scored, shaded] = score_scales(image, search, sun_angle);
+  RocksFound found{
+      .rocks = {}, .light = sun_angle, .coherence = light_coherence(scored, light), .shaded = shaded};
   lower_to_fraction(scored, found.coherence.real_fraction());
   for (const ScoredRock& judged : scored) {
     const double diameter = 2 * judged.scale * judged.radius();

@@ -31,11 +31,17 @@ struct ScoredRock {
 std::vector<ScoredRock> score_shadows(const ShadowMap& map, const LightFrame& light, const RockTable& table,
                                       const std::optional<ReliefDisplacement>& displacement = {});
 
+/// Dark spots of all scales, and what of the image lies in shadow at its full resolution.
+struct ScoredImage {
+  std::vector<ScoredRock> spots;
+  ShadedGround shaded;
+};
+
 /// Applies score_shadows at every scale of the image. Each is half as fine as the one before, until
 /// `max_diameter` or the size of the image is reached; larger rocks are compared with a wider background.
 /// Positions remain in pixels of each scale. Confidences are adapted to the fraction of rocks among the spots
 /// of the same scale (prior_shift).
-std::vector<ScoredRock> score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
+ScoredImage score_scales(const Pixels& image, const RockSearch& search, Radians sun_angle);
 
 /// Finds rocks by the method `shadow` for a known direction of light, and checks whether they are lit from
 /// it. Where too few are, confidences are lowered so that their sum is at most that of the rocks that can be

@@ -19,6 +19,8 @@ float median_of(std::vector<float> values) {
   return *middle;
 }
 
+constexpr float kShaded = 0.25F;  // of the depth of lit ground: what is darker lies in shadow itself
+
 constexpr float kFlat = 0.85F;              // depth of the four neighbours / depth of the floor
 constexpr float kDeeperThanPointed = 1.3F;  // depth of full shadow / depth of the deepest pointed floors
 
@@ -125,9 +127,10 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
                 .umbra = *umbra,
                 .noise = noise / typical_depth,
                 .texture = ground.spread,
-                .tile = tile};
+                .tile = tile,
+                .shaded = {}};
   // Ground almost as dark as the umbra is itself in shadow, so no rock casts one there.
-  const float min_depth = std::max(0.25F * typical_depth, 4 * noise);
+  const float min_depth = std::max(kShaded * typical_depth, 4 * noise);
   for (std::int64_t r = 0; r < map.texture.rows(); ++r)
     for (std::int64_t c = 0; c < map.texture.columns(); ++c)
       map.texture(c, r) /= std::max(min_depth, ground.level(c, r) - *umbra);
@@ -136,6 +139,10 @@ std::optional<ShadowMap> map_shadows(const Pixels& image, int tile, std::optiona
     ground.read_row(y, level, {});
     const auto in = image.row(y);
     const auto out = map.alpha.row(y);
+    for (const float value : in) {
+      map.shaded.pixels += value == value;
+      map.shaded.shaded += value < *umbra + kShaded * typical_depth;
+    }
     for (std::size_t x = 0; x < level.size(); ++x) {
       const float depth = level[x] - *umbra;
       const float alpha = (level[x] - in[x]) / depth;

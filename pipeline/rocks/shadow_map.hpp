@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "geo/image_source.hpp"
+#include "pipeline/rocks/shaded_ground.hpp"
 namespace waymark::pipeline {
 
 /// Fraction of each pixel in full shadow: alpha = (B - I) / (B - S), B the local ground, S the umbra. 0 is
@@ -17,6 +18,7 @@ struct ShadowMap {
   float noise = 0;      ///< standard deviation of pixel noise in alpha, median over the image
   Grid<float> texture;  ///< per tile: standard deviation of alpha over the ground
   int tile = 32;
+  ShadedGround shaded;  ///< pixels in shadow, those of rocks too
 
   float texture_at(double x, double y) const;
 };

@@ -61,6 +61,7 @@ struct RocksFromShadows {
                 ": the sun is unknown, and the image does not show where its light comes from: no rocks");
     if (found.coherence.real_fraction() < 1)
       unit.warn(image.info().name + ": " + unusual_ground_warning(found.coherence));
+    if (found.shaded.is_much()) unit.warn(image.info().name + ": " + shaded_ground_warning(found.shaded));
     unit.count_out(static_cast<std::int64_t>(found.rocks.size()));
     unit.write(detections, std::move(found.rocks));
   }

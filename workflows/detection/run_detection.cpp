@@ -89,10 +89,11 @@ std::string reason_for_no_detections(const ImageSource& image, std::vector<std::
   return {};
 }
 
-/// Sum over the pieces of an image in which rocks are not lit as rocks are.
+/// Sums over the pieces of an image.
 struct DoubtfulGround {
   std::mutex mutex;
-  pipeline::LightCoherence seen;
+  pipeline::LightCoherence seen;  ///< of pieces in which rocks are not lit as rocks are
+  pipeline::ShadedGround shaded;
 };
 
 ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Radians> sun,
@@ -122,10 +123,9 @@ ObjectDetector detector(const DetectionPlan& plan, TypeId type, std::optional<Ra
     search.max_diameter = max;
     search.min_confidence = plan.min_confidence;
     pipeline::RocksFound found = pipeline::search_rocks(pixels, search);
-    if (found.coherence.real_fraction() < 1) {
-      const std::scoped_lock lock(doubtful.mutex);
-      doubtful.seen += found.coherence;
-    }
+    const std::scoped_lock lock(doubtful.mutex);
+    if (found.coherence.real_fraction() < 1) doubtful.seen += found.coherence;
+    doubtful.shaded += found.shaded;
     return std::move(found.rocks);
   };
 }
@@ -194,6 +194,7 @@ DetectResult run_detection(const DetectionPlan& plan, int threads,
   DoubtfulGround doubtful;
   found.detections.detections = search_image(*plan.image, search, detector(plan, type, sun, doubtful));
   if (doubtful.seen.rocks > 0) found.warnings.push_back(pipeline::unusual_ground_warning(doubtful.seen));
+  if (doubtful.shaded.is_much()) found.warnings.push_back(pipeline::shaded_ground_warning(doubtful.shaded));
   if (plan.type == "rock" && !plan.sun_elevation && (info.ortho || plan.gsd))
     found.warnings.push_back("rocks have no heights: they need --sun-elevation");
   return found;

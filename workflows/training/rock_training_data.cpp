@@ -162,7 +162,7 @@ std::vector<pipeline::RockExample> rock_examples(const SyntheticView& view, int 
   const double sun = view.sun_angle;
   const double assumed_sun = sun + (random.bernoulli(0.5) ? random.normal(0, 0.06) : 0);
   if (random.bernoulli(0.6)) search.sun_elevation = view.elevation;
-  const auto judged = pipeline::score_scales(image.pixels, search, Radians{assumed_sun});
+  const auto judged = pipeline::score_scales(image.pixels, search, Radians{assumed_sun}).spots;
   std::vector<pipeline::RockExample> samples;
   std::vector<Detection> spots;
   for (const pipeline::ScoredRock& one : judged) {

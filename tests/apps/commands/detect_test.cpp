@@ -265,8 +265,9 @@ TEST_F(Detect, MissingFilesAndFolders) {
   EXPECT_THAT(said.err, HasSubstr(".csv, .geojson or .gpkg"));
 }
 
-TEST_F(Detect, RocksOfAGivenSunHaveHeights) {
-  // one dark ellipse to the right of a bright spot: a rock under a sun at the left (180 degrees)
+/// Nine rocks under a sun at the left (180 degrees), each a dark ellipse to the right of a bright spot, as a
+/// PGM of 128 x 128 pixels. The lowest `shaded` rows lie in shadow.
+std::string make_rocks(const std::string& file, int shaded = 0) {
   std::string pixels;
   std::uint32_t state = 99;
   for (int row = 0; row < 128; ++row)
@@ -279,11 +280,16 @@ TEST_F(Detect, RocksOfAGivenSunHaveHeights) {
         if (shadow < 1) value = 25;
         if (body < 1 && column < cx + 1) value = 190;
       }
+      if (row >= 128 - shaded) value = 25;
       state = state * 1664525u + 1013904223u;
       pixels += static_cast<char>(static_cast<unsigned char>(value + static_cast<double>(state >> 24) / 64));
     }
-  const std::string rocks = folder_ / "rocks.pgm";
-  std::ofstream(rocks, std::ios::binary) << "P5 128 128 255\n" << pixels;
+  std::ofstream(file, std::ios::binary) << "P5 128 128 255\n" << pixels;
+  return file;
+}
+
+TEST_F(Detect, RocksOfAGivenSunHaveHeights) {
+  const std::string rocks = make_rocks(folder_ / "rocks.pgm");
   const Outcome said = detect(
       rocks, {"-o", csv_, "--image-sun-angle", "180", "--sun-elevation", "30", "--gsd", "0.1"}, "rocks");
   ASSERT_EQ(said.code, 0) << said.err;
@@ -300,6 +306,17 @@ TEST_F(Detect, RocksOfAGivenSunHaveHeights) {
             0);
   EXPECT_EQ(cell(text_of(csv_), 1, "height"), cell(csv, 1, "height"));
   EXPECT_NEAR(cell(text_of(csv_), 1, "radius"), cell(csv, 1, "radius") * std::numbers::sqrt2, 1e-4);
+}
+
+TEST_F(Detect, GroundInShadowIsReported) {
+  const auto says = [&](int shaded) {
+    return detect(make_rocks(folder_ / "shaded.pgm", shaded), {"-o", csv_, "--image-sun-angle", "180"},
+                  "rocks")
+        .err;
+  };
+  EXPECT_THAT(says(0), Not(HasSubstr("lie in shadow")));
+  EXPECT_THAT(says(32),
+              HasSubstr("27 % of the pixels lie in shadow"));  // a quarter, and shadows of six rocks
 }
 
 TEST_F(Detect, GeoreferencesThatOptionsContradict) {

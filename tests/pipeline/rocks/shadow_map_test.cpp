@@ -104,6 +104,25 @@ TEST(MapShadows, IsLinearInBrightness) {
     ASSERT_NEAR(stretched->alpha.cells()[i], map->alpha.cells()[i], 1e-3);
 }
 
+TEST(MapShadows, CountsThePixelsInShadow) {
+  Pixels image(128, 96);
+  Random random(6);
+  for (float& value : image.cells()) value = static_cast<float>(random.normal(100, 1));
+  for (std::int64_t y = 0; y < 96; ++y)
+    for (std::int64_t x = 96; x < 128; ++x) image(x, y) -= 80;  // the last quarter
+  for (std::int64_t x = 0; x < 128; ++x) image(x, 0) = std::nanf("");
+  const auto map = map_shadows(image, 32);
+  ASSERT_TRUE(map);
+  EXPECT_EQ(map->shaded.pixels, 128 * 95);
+  EXPECT_EQ(map->shaded.shaded, 32 * 95);
+  EXPECT_TRUE(map->shaded.is_much());
+  ShadedGround sum = map->shaded;
+  sum += {.pixels = 3 * 128 * 95, .shaded = 0};
+  EXPECT_DOUBLE_EQ(sum.fraction(), 0.0625);
+  EXPECT_FALSE(sum.is_much());
+  EXPECT_DOUBLE_EQ(ShadedGround{}.fraction(), 0);
+}
+
 TEST(MapShadows, NothingWithoutContrast) {
   EXPECT_FALSE(map_shadows(Pixels(64, 64, 100), 32));
   EXPECT_FALSE(map_shadows(Pixels(64, 64, std::nanf("")), 32));
