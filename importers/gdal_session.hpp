@@ -24,7 +24,7 @@ class GdalListener {
   /// Returns the first error, which names the cause; empty if there was none. Removes a leading `path`.
   std::string error_about(const std::string& path) const;
 
-  /// True if a decoder made up pixels that the file lacks. GDAL only warns of a JPEG that ends early.
+  /// Returns true if a decoder made up pixels that the file lacks: GDAL only warns of a JPEG that ends early.
   bool pixels_are_missing() const { return pixels_are_missing_; }
 
  private:
