@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "core/escape_markup.hpp"
 #include "geodb/layers/landmark_layout.hpp"
@@ -16,6 +17,8 @@ struct Marker {
   const char* qgis;
   const char* sld;
   bool filled;
+  double size = 2.4, stroke = 0.2;  ///< millimetres; data may define the size
+  bool is_stroke = false;           ///< the stroke is all that is seen of it
 };
 
 // Outline of the solid from above; a cone is the triangle that maps use for summits.
@@ -30,9 +33,31 @@ Marker marker_of(Solid solid) {
     case Solid::cone:
       return {"triangle", "triangle", true};
     case Solid::bowl:
-      return {"circle", "circle", false};
+      return {.qgis = "circle", .sld = "circle", .filled = false, .stroke = 0.5, .is_stroke = true};
   }
   return {"circle", "circle", true};
+}
+
+/// How a type with a direction is drawn: a line along the wall, to scale where its length is known, else an
+/// arrow.
+struct Heading {
+  std::string feature;  ///< direction or axis
+  std::string length;   ///< feature that the line is as long as; empty: an arrow that shows where it points
+  bool across = false;  ///< the direction is a normal of the line
+};
+
+std::optional<Heading> heading_of(const LandmarkType& type) {
+  if (type.drawn_as != Solid::point || !type.body.feature.empty()) return std::nullopt;
+  const auto angle =
+      std::ranges::find_if(type.features, [](const FeatureSpec& f) { return is_angle(f.scale); });
+  if (angle == type.features.end()) return std::nullopt;
+  const bool across = angle->scale == Scale::direction;
+  const auto has = [&](const char* name) {
+    return std::ranges::find(type.features, name, &FeatureSpec::name) != type.features.end();
+  };
+  if (has("length")) return Heading{angle->name, "length", across};
+  if (has("width") && !across) return Heading{angle->name, "width", across};
+  return Heading{angle->name, "", across};
 }
 
 std::string property(std::string_view name, std::string_view expression) {
@@ -80,9 +105,31 @@ std::string label_expression(const std::string& feature) {
   return fmt::format("round(&quot;{0}&quot;, if(abs(&quot;{0}&quot;) &lt; 100, 1, 0))", feature);
 }
 
+/// Returns what data define of a marker with a heading: QGIS's lines and arrows point up and turn clockwise.
+std::string heading_properties(const Heading& heading, const Crs& crs) {
+  const std::string turned =
+      property("angle", fmt::format("coalesce(degrees(&quot;{}&quot;), 0){}", heading.feature,
+                                    heading.across && !heading.length.empty() ? " + 90" : ""));
+  if (heading.length.empty()) return turned;
+  return turned + property("size", fmt::format("max(2.4, coalesce(1000 * &quot;{}&quot; / @map_scale{}, 0))",
+                                               heading.length, scale_correction(crs)));
+}
+
+Marker marker_of(const LandmarkType& type) {
+  const auto heading = heading_of(type);
+  if (!heading) return marker_of(type.drawn_as);
+  if (heading->length.empty()) return {.qgis = "arrow", .sld = "square", .filled = true, .size = 3.6};
+  return {.qgis = "line", .sld = "square", .filled = true, .stroke = 0.8, .is_stroke = true};
+}
+
+/// Returns what data define of the marker.
+std::string marker_properties(const LandmarkType& type, const Crs& crs) {
+  if (const auto heading = heading_of(type)) return heading_properties(*heading, crs);
+  return type.size_feature.empty() ? "" : property("size", size_expression(type, crs));
+}
+
 std::string qml_symbol(const LandmarkType& type, const Crs& crs) {
-  const Marker marker = marker_of(type.drawn_as);
-  const std::string size = type.size_feature.empty() ? "" : property("size", size_expression(type, crs));
+  const Marker marker = marker_of(type);
   return fmt::format(R"(  <renderer-v2 type="singleSymbol" forceraster="0" symbollevels="0" enableorderby="0">
     <symbols>
       <symbol type="marker" name="0" alpha="1" clip_to_extent="1" force_rhr="0">
@@ -94,7 +141,7 @@ std::string qml_symbol(const LandmarkType& type, const Crs& crs) {
             <Option name="outline_style" value="solid" type="QString"/>
             <Option name="outline_width" value="{}" type="QString"/>
             <Option name="outline_width_unit" value="MM" type="QString"/>
-            <Option name="size" value="2.4" type="QString"/>
+            <Option name="size" value="{}" type="QString"/>
             <Option name="size_unit" value="MM" type="QString"/>
             <Option name="scale_method" value="diameter" type="QString"/>
           </Option>
@@ -105,8 +152,8 @@ std::string qml_symbol(const LandmarkType& type, const Crs& crs) {
   </renderer-v2>
 )",
                      marker.qgis, qml_colour(type.colour, marker.filled ? 1 : 0),
-                     marker.filled ? "255,255,255,255" : qml_colour(type.colour), marker.filled ? 0.2 : 0.5,
-                     properties(size));
+                     marker.is_stroke ? qml_colour(type.colour) : "255,255,255,255", marker.stroke,
+                     marker.size, properties(marker_properties(type, crs)));
 }
 
 std::string qml_labels(const LandmarkType& type) {

@@ -35,7 +35,16 @@ def layer_names(path):
     return [name for name in names if name not in ("landmark", "image")]
 
 
-def complaints(layer):
+def styles_of(path):
+    """The style that the map holds for each layer."""
+    source = ogr.Open(path)
+    rows = source.ExecuteSQL("SELECT f_table_name, styleQML FROM layer_styles")
+    styles = {row.GetField(0): row.GetField(1) for row in rows}
+    source.ReleaseResultSet(rows)
+    return styles
+
+
+def complaints(layer, style):
     """What a user would find wrong with a layer on opening it."""
     if not layer.isValid():
         return ["the layer is not valid"]
@@ -43,10 +52,10 @@ def complaints(layer):
     if not layer.crs().isValid():
         found.append("its CRS is not valid")
     renderer = layer.renderer()
-    if isinstance(renderer, QgsSingleSymbolRenderer) and renderer.symbol().symbolLayer(0).layerType() == "SimpleMarker" \
-            and not renderer.symbol().hasDataDefinedProperties() and not layer.labelsEnabled() \
-            and layer.fields().indexOf("var_x") >= 0:
-        found.append("the style of the map is not applied")
+    if isinstance(renderer, QgsSingleSymbolRenderer):
+        colour = renderer.symbol().symbolLayer(0).color()
+        if f'"{colour.red()},{colour.green()},{colour.blue()},' not in style:
+            found.append("the style of the map is not applied")
     context = QgsRenderContext()
     for symbol in renderer.symbols(context):
         drawn = symbol.symbolLayer(0)
@@ -66,20 +75,34 @@ def rank(layer):
     return layer.geometryType()
 
 
+def drawn_value(layer, feature, settings, key):
+    """What the style makes of a feature: its size in millimetres, its angle in degrees clockwise from up."""
+    context = QgsExpressionContext(settings.expressionContext())
+    context.setFields(layer.fields())
+    context.setFeature(feature)
+    value = layer.renderer().symbol().symbolLayer(0).dataDefinedProperties().property(key)
+    return QgsExpression(value.expressionString()).evaluate(context)
+
+
 def scale_complaints(layer, settings):
-    """Craters measure on the map, from north to south, what their radius says."""
-    crater = next((f for f in layer.getFeatures() if layer.name() == "crater"), None)
-    if crater is None:
+    """Craters measure on the map, from north to south, what their radius says, and walls what their length says; walls
+    lie across their normals."""
+    metres = {"crater": lambda f: 2 * f["radius"], "wall": lambda f: f["length"]}.get(layer.name())
+    feature = next(layer.getFeatures(), None)
+    if metres is None or feature is None:
         return []
     crs = layer.crs()
     unit = math.pi / 180 * QgsEllipsoidUtils.ellipsoidParameters(crs.ellipsoidAcronym()).semiMajor if crs.isGeographic() else 1
-    wanted = 2 * crater["radius"] / unit / settings.mapUnitsPerPixel() / settings.outputDpi() * 25.4
-    context = QgsExpressionContext(settings.expressionContext())
-    context.setFields(layer.fields())
-    context.setFeature(crater)
-    size = layer.renderer().symbol().symbolLayer(0).dataDefinedProperties().property(QgsSymbolLayer.PropertySize)
-    drawn = QgsExpression(size.expressionString()).evaluate(context)
-    return [f"a crater of {wanted:.1f} mm has {drawn:.1f} mm"] if wanted > 5 and abs(drawn / wanted - 1) > 0.03 else []
+    wanted = metres(feature) / unit / settings.mapUnitsPerPixel() / settings.outputDpi() * 25.4
+    drawn = drawn_value(layer, feature, settings, QgsSymbolLayer.PropertySize)
+    found = []
+    if wanted > 5 and abs(drawn / wanted - 1) > 0.03:
+        found.append(f"a {layer.name()} of {wanted:.1f} mm has {drawn:.1f} mm")
+    if layer.name() == "wall":
+        angle = drawn_value(layer, feature, settings, QgsSymbolLayer.PropertyAngle)
+        if abs(math.remainder(angle - math.degrees(feature["direction"]) - 90, 180)) > 0.01:
+            found.append(f"a wall whose normal is {math.degrees(feature['direction']):.1f} is drawn at {angle:.1f} degrees")
+    return found
 
 
 def shaded_dem(path):
@@ -116,9 +139,10 @@ def main(path, picture, dem=None):
     application.initQgis()
     failed = False
     layers = []
+    styles = styles_of(path)
     for name in layer_names(path):
         layer = QgsVectorLayer(f"{path}|layername={name}", name, "ogr")
-        for complaint in complaints(layer):
+        for complaint in complaints(layer, styles[name]):
             print(f"{name}: {complaint}")
             failed = True
         print(f"{name}: {layer.featureCount()} landmarks, {layer.crs().authid() or layer.crs().description()}, "

@@ -62,6 +62,27 @@ TEST(QgisRender, DrawsStandsInClassesAndLines) {
   expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
 }
 
+TEST(QgisRender, DrawsWallsToScaleAlongTheirFaces) {
+  const test::TemporaryFolder folder;
+  geodb::MapContents map = test::three_summits("EPSG:32632", 450'000, 5'050'000, 100);
+  const TypeId id = map.types.id("wall");
+  const LandmarkType& type = map.types[id];
+  map.landmarks.clear();
+  for (int i = 0; i < 3; ++i) {
+    Landmark wall;
+    wall.uid = "wa-" + std::to_string(i);
+    wall.type = id;
+    wall.position.xyz = {450'000.0 + 40 * i, 5'050'000.0 + 30 * i, 0};
+    wall.features.resize(type.features.size());
+    wall.features[feature_index(type, "direction")] = {0.7 - 0.3 * i, 0.01, 1};
+    wall.features[feature_index(type, "length")] = {25, 0.1, 1};
+    wall.quality = {1, 2, std::vector<std::optional<double>>(type.features.size())};
+    map.landmarks.push_back(wall);
+  }
+  geodb::write_map(folder / "map.gpkg", map);
+  expect_qgis_draws(folder / "map.gpkg", folder / "map.png");
+}
+
 TEST(QgisRender, KnowsThePlanetaryCrs) {
   const test::TemporaryFolder folder;
   test::write_mars_map(folder / "map.gpkg");
