@@ -72,6 +72,39 @@ void observability(benchmark::State& state) {
 }
 BENCHMARK(observability)->Arg(360)->Arg(270)->Unit(benchmark::kMicrosecond);
 
+// A cell of a raster from which nothing is seen: almost all of a map of mountain tops.
+void observability_unseen(benchmark::State& state) {
+  const auto map = clustered_landmarks();
+  ObservabilityRules rules;
+  rules.sensing.coverage.range = 25;
+  const ObservabilityField field(map, rules);
+  double x = 0;
+  for (auto _ : state) {
+    x = std::fmod(x + 7.3, 1000);
+    benchmark::DoNotOptimize(field.at(x, 3000 + x));
+  }
+}
+BENCHMARK(observability_unseen)->Unit(benchmark::kNanosecond);
+
+// Lines of `range` metres over hills with cells of 30 m.
+void line_of_sight(benchmark::State& state) {
+  Grid<float> heights(800, 800);
+  for (std::int64_t r = 0; r < 800; ++r)
+    for (std::int64_t c = 0; c < 800; ++c)
+      heights(c, r) = static_cast<float>(300 * std::sin(0.03 * double(c)) * std::cos(0.025 * double(r)) +
+                                         20 * std::sin(0.3 * double(c + r)));
+  const auto sees =
+      localization::terrain_line_of_sight(Terrain(std::move(heights), 0, 12000, 15, 15), {}, 6371000, 0.13);
+  Random random(5);
+  const double range = double(state.range(0));
+  for (auto _ : state) {
+    const double x = random.uniform(0, 12000), y = random.uniform(0, 12000),
+                 yaw = random.uniform(-3.14, 3.14);
+    benchmark::DoNotOptimize(sees({x, y, 0}, {x + range * std::cos(yaw), y + range * std::sin(yaw)}));
+  }
+}
+BENCHMARK(line_of_sight)->Arg(100)->Arg(6000)->Unit(benchmark::kNanosecond);
+
 void route(benchmark::State& state) {
   const auto map = clustered_landmarks();
   const RouteProblem problem = square_kilometre(map);

@@ -13,9 +13,16 @@ namespace {
 // Bytes, so that a message fits on a screen; hints may list every option of a stage.
 constexpr std::size_t kMaxProblem = 600, kMaxHint = 1500;
 
+/// Returns the text with line breaks, which file names may have, as \\n.
+std::string on_one_line(const std::string& text) {
+  std::string line;
+  for (const char c : text) line += c == '\n' ? std::string("\\n") : std::string(1, c);
+  return line;
+}
+
 std::string whole_message(const std::string& problem, const std::string& where, const std::string& hint) {
   std::string text = printable(problem, kMaxProblem);
-  if (!where.empty()) text += "\n  " + printable(where, kMaxProblem);
+  if (!where.empty()) text += "\n  " + printable(on_one_line(where), kMaxProblem);
   if (!hint.empty()) text += "\n  " + printable(hint, kMaxHint);
   return text;
 }

@@ -96,4 +96,19 @@ bool Terrain::in_shadow(const Point<GridFrame>& point, const Direction<GridFrame
   return range && pyramid_->first_hit(line, *range, UnknownCells::pass).end == RayEnd::ground;
 }
 
+bool Terrain::reaches(const Point<GridFrame>& from, const Point<GridFrame>& to) const {
+  const Eigen::Vector3d along = to.xyz - from.xyz;
+  const double length = along.norm();
+  if (!(length > 0)) {
+    const auto ground = height(from.xyz.x(), from.xyz.y());
+    return ground && *ground >= from.xyz.z();
+  }
+  const GridRay line = pyramid_->to_grid_ray(from.xyz, along / length);
+  auto range = pyramid_->clip_to_extent(line);
+  if (!range) return false;
+  range->to = std::min(range->to, length);
+  return range->from <= range->to &&
+         pyramid_->first_hit(line, *range, UnknownCells::pass).end == RayEnd::ground;
+}
+
 }  // namespace waymark::inline geo

@@ -52,6 +52,9 @@ class Terrain {
   /// Returns whether the terrain occludes the light from a direction. Points are lifted by 1 mm; unknown
   /// cells cast no shadow.
   bool in_shadow(const Point<GridFrame>& point, const Direction<GridFrame>& towards_light) const;
+  /// Returns whether the terrain reaches the segment between two points. Unknown cells and what lies outside
+  /// the extent do not. Cost as of cast().
+  bool reaches(const Point<GridFrame>& from, const Point<GridFrame>& to) const;
 
  private:
   struct Pyramid;

@@ -39,6 +39,17 @@ std::vector<Finding> findings_of(const sqlite::Database& database) {
   return findings.take();
 }
 
+/// Throws Error{input} with the first finding, if there is one.
+void refuse_findings(const std::filesystem::path& map, const std::string& problem) {
+  const std::vector<Finding> findings = validate_map(map);
+  if (findings.empty()) return;
+  const Finding& first = findings.front();
+  const std::string table = first.table.empty() ? "" : ", table " + first.table;
+  const std::string row = first.row ? ", row " + std::to_string(*first.row) : "";
+  throw Error(ErrorCode::input, problem + first.text, map.string() + table + row,
+              "`waymark validate` lists them; run its job again");
+}
+
 }  // namespace
 
 std::vector<Finding> validate_map(const std::filesystem::path& path) {
@@ -46,14 +57,12 @@ std::vector<Finding> validate_map(const std::filesystem::path& path) {
   return with_map_name(path, [&] { return findings_of(map.database); });
 }
 
+void check_before_reading(const std::filesystem::path& map) {
+  refuse_findings(map, "the map has errors, and what is made of it would be wrong: ");
+}
+
 void check_before_copy(const std::filesystem::path& map) {
-  const std::vector<Finding> findings = validate_map(map);
-  if (findings.empty()) return;
-  const Finding& first = findings.front();
-  const std::string table = first.table.empty() ? "" : ", table " + first.table;
-  const std::string row = first.row ? ", row " + std::to_string(*first.row) : "";
-  throw Error(ErrorCode::input, "the map has errors that its copy would have, too: " + first.text,
-              map.string() + table + row, "`waymark validate` lists them; run its job again");
+  refuse_findings(map, "the map has errors that its copy would have, too: ");
 }
 
 }  // namespace waymark::geodb

@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 #include "core/options.hpp"
+#include "geo/terrain.hpp"
 #include "localization/identification/landmark_grid.hpp"
 #include "localization/terrain_pose.hpp"
 namespace waymark::localization {
@@ -25,6 +26,13 @@ struct LineOfSightOptions {
 /// not occlude. Ignores curvature, so it holds for a few kilometres. A DEM of 1 m cells resolves hills that
 /// hide landmarks, not rocks that do.
 LineOfSight terrain_line_of_sight(TerrainHeight ground, const LineOfSightOptions& options);
+
+/// Returns the same test on heights in memory, in the map frame. It is exact on the bilinear surface, costs
+/// 1 us however long the line is, and is thread-safe.
+/// - `body_radius` metres, 0 for a plane: the surface curves away below the line, less by `refraction`.
+/// - Terrain within `options.step` or one cell of the landmark, whichever is more, does not hide it.
+LineOfSight terrain_line_of_sight(const Terrain& terrain, const LineOfSightOptions& options,
+                                  double body_radius, double refraction);
 
 /// Returns whether the terrain hides a landmark for every position of the sensor within two standard
 /// deviations: at the pose, and at the ends of both axes of the covariance of its position. False if

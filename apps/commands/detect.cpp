@@ -35,6 +35,9 @@ std::vector<Argument> detect_arguments(workflows::DetectRequest& request) {
           "0.5; nothing of trees found by heights"),
       Argument{"--band", "N", &request.band, "Band of the image, from 1"}.or_else(
           "brightness of a colour image, else the first"),
+      Argument{"--aoi", "POLYGONS", &request.aoi,
+               "Area of interest, in any CRS of the body: detections outside are dropped"}
+          .offering(Offer::file),
       Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
       Argument{
           "--verifier", "FILE", &request.verifier,

@@ -3,6 +3,7 @@
 
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "core/error.hpp"
 #include "geodb/map_store.hpp"
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/postgres_map.hpp"
@@ -23,7 +24,7 @@ class Import final : public Command {
             "Text tables (separated by comma, semicolon, tab, bar or blanks) and every vector layer GDAL "
             "reads. Columns with the name of a feature are used for it, in metres unless their name says "
             "otherwise (depth_km, \"Depth (km)\"); a diameter gives the radius. The interpretation of the "
-            "columns is printed.\n\n"
+            "columns is printed, and those not used.\n\n"
             "--columns overrides it: target=expression, separated by commas. Targets are x, y, z, uid, "
             "the features and attributes of the type, confidence, seen, visible, observations, and "
             "deviations: position_sd, x_sd, y_sd, z_sd in metres, <feature>_sd. Expressions may use the "
@@ -65,6 +66,9 @@ class Import final : public Command {
              Argument{"--unit", "UNIT", &request_.unit,
                       "Unit of local coordinates, with --rules: m, dm, cm, mm, km, in, ft, yd, mi, us_ft"}
                  .or_else("that a DXF file states, else metres"),
+             Argument{"--aoi", "POLYGONS", &request_.options.aoi,
+                      "Area of interest, in any CRS of the body: rows outside are rejected"}
+                 .offering(Offer::file),
              {"--skip-bad-rows", "", &request_.options.skip_bad_rows,
               "Reject rows that cannot be read, instead of stopping at the first"},
              format_option(&format_)},
@@ -91,6 +95,9 @@ class Import final : public Command {
       return 0;
     }
     if (geodb::postgres::is_address(request_.table)) {
+      if (!request_.options.aoi.empty())
+        throw Error(ErrorCode::usage, "--aoi does not apply to a map in a database", "--aoi",
+                    "import the map, then `waymark export MAP.gpkg PART.gpkg --aoi AREA`");
       geodb::import_from_postgres(request_.table, request_.map);
       if (format_ == "json") print_stored();
       return 0;
@@ -112,6 +119,7 @@ class Import final : public Command {
             {"rejected", ResultKind::counts, "Rejected rows by reason"},
             {"first_rejection", ResultKind::text, "Where and why the first was rejected; null: none was"},
             {"columns", ResultKind::texts, "How the columns were interpreted"},
+            {"unused_columns", ResultKind::texts, "Columns of the table that were not used"},
             {"warnings", ResultKind::texts, "Warnings, which standard error has, too"}};
   }
 
@@ -124,6 +132,7 @@ class Import final : public Command {
                                  {"rejected", table.rejected_by_reason},
                                  {"first_rejection", text_or_null(table.first_rejection)},
                                  {"columns", table.bindings},
+                                 {"unused_columns", table.unused},
                                  {"warnings", table.warnings}});
   }
 
@@ -137,6 +146,7 @@ class Import final : public Command {
                                  {"rejected", std::map<std::string, std::int64_t>()},
                                  {"first_rejection", {}},
                                  {"columns", std::vector<std::string>()},
+                                 {"unused_columns", std::vector<std::string>()},
                                  {"warnings", std::vector<std::string>()}});
   }
 

@@ -43,6 +43,9 @@ class Inventory final : public Command {
                  .or_else("the whole map"),
              Argument{"--stands-layer", "NAME", &request_.stands_layer, "Layer of a file that holds several"},
              Argument{"--grid", "METRES", &request_.grid, "Square cells of this side in place of stands"},
+             Argument{"--aoi", "POLYGONS", &request_.aoi,
+                      "Area of interest, in any CRS: its polygons are the stands"}
+                 .offering(Offer::file),
              Argument{"--allometry", "TABLE.csv", &request_.allometry,
                       "Stem diameters from this table (`waymark allometry fit`), by the stand's species"}
                  .offering(Offer::file)

@@ -25,6 +25,9 @@ class Merge final : public Command {
                           Offer::file),
                       Argument{"-o,--output", "MAP.gpkg", &request_.result, "Map to write"}.needed().offering(
                           Offer::file),
+                      Argument{"--aoi", "POLYGONS", &request_.aoi,
+                               "Area of interest, in any CRS of the body: the merged landmarks inside"}
+                          .offering(Offer::file),
                       {"--changes", "", &request_.changes,
                        "Compare two maps, the earlier one first: layer change of the result"},
                       {"--max-move", "METRES", &request_.max_move,

@@ -22,7 +22,7 @@ class ObservabilityCommand final : public Command {
             "per metre driven, means over the headings. A QGIS style is written beside it.\n\n"
             "Noise of the odometry and correlated errors of the map are those of `waymark route`. "
             "Identities are taken as known. With a DEM, terrain hides landmarks as it does for `waymark "
-            "localize`.",
+            "localize`, and the curvature of the body as well.",
         .arguments =
             {file_word("MAP.gpkg", &request_.map, "Map of landmarks, in metres"),
              Argument{"-o,--output", "INFO.tif", &request_.output, "Raster"}.needed().offering(Offer::file),
@@ -35,7 +35,8 @@ class ObservabilityCommand final : public Command {
                  "that of the profile"),
              Argument{"--view", "DEGREES", &request_.view, "Horizontal field of view"}.or_else(
                  "that of the profile"),
-             Argument{"--cell", "METRES", &request_.cell, "Cells of the raster"}.or_else("2"),
+             Argument{"--cell", "METRES", &request_.cell, "Cells of the raster"}.or_else(
+                 "2, or as wide as makes about a million cells"),
              Argument{"--dem", "DEM...", &request_.dem, "Terrain that hides landmarks"}
                  .offering(Offer::file)
                  .or_else("that stored in the map"),
@@ -63,6 +64,7 @@ class ObservabilityCommand final : public Command {
                    {{"raster", request_.output},
                     {"columns", made.columns},
                     {"rows", made.rows},
+                    {"cell_m", made.cell},
                     {"seen", made.seen},
                     {"median_sd_m", made.seen > 0 ? ResultValue(made.median_sd) : ResultValue()}});
     return 0;
@@ -73,6 +75,7 @@ class ObservabilityCommand final : public Command {
     return {{"raster", ResultKind::text, "Raster that was written"},
             {"columns", ResultKind::integer, "Its columns"},
             {"rows", ResultKind::integer, "Its rows"},
+            {"cell_m", ResultKind::number, "Size of its cells, metres"},
             {"seen", ResultKind::number, "Fraction of the cells with a landmark in sight, 0 to 1"},
             {"median_sd_m", ResultKind::number,
              "Median of position_sd over these cells, to 5 %; null: no landmark is in sight"}};

@@ -81,6 +81,9 @@ class Reconstruct final : public Command {
                  "images"),
              Argument{"--cell", "M", &request_.cell, "Size of a cell of the DEM"}.or_else(
                  "twice the median size of a pixel on the terrain"),
+             Argument{"--aoi", "POLYGONS", &request_.aoi,
+                      "Area of interest, in any CRS of the body: DEM and orthophoto of the box around it"}
+                 .offering(Offer::file),
              Argument{"--until", "PRODUCT", &until_, "Last product to make"}
                  .one_of({"poses", "dem", "ortho"})
                  .or_else("ortho"),

@@ -6,6 +6,7 @@
 #include "apps/log.hpp"
 #include "exporters/report/report_html.hpp"
 #include "workflows/evaluation/evaluate.hpp"
+#include "workflows/query/map_of_area.hpp"
 
 namespace waymark::apps {
 namespace {
@@ -37,6 +38,9 @@ class Report final : public Command {
              Argument{"-o,--output", "REPORT.html", &html_, "Report to write; an older one is replaced"}
                  .needed()
                  .offering(Offer::file),
+             Argument{"--aoi", "POLYGONS", &aoi_,
+                      "Area of interest, in any CRS of the body: report the landmarks inside"}
+                 .offering(Offer::file),
              Argument{"--title", "TEXT", &options_.title, "Title of the page"}.or_else("the file's name"),
              Argument{"--static", "", &static_, "Write the page without a script"},
              Argument{"--top", "N", &options_.top, "Landmarks listed per type"}.or_else("25"),
@@ -55,8 +59,10 @@ class Report final : public Command {
 
   int run(const Session&) override {
     options_.interactive = !static_;
-    if (!truth_.empty()) options_.checks = workflows::check_quality(map_, truth_);
-    exporters::write_report(map_, html_, options_);
+    const workflows::MapOfArea map(map_, aoi_, html_);
+    for (const std::string& warning : map.warnings()) log_warning(warning);
+    if (!truth_.empty()) options_.checks = workflows::check_quality(map.path(), truth_);
+    exporters::write_report(map.path(), html_, options_);
     log_summary(html_ + "\n");
     if (format_ == "json")
       print_result(result_keys(), {{"report", html_},
@@ -75,7 +81,7 @@ class Report final : public Command {
   }
 
   std::string format_ = "text";
-  std::string map_, html_, truth_;
+  std::string map_, html_, truth_, aoi_;
   bool static_ = false;
   exporters::ReportOptions options_;
 };

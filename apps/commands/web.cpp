@@ -30,6 +30,9 @@ class Web final : public Command {
              Argument{"-o,--output", "DIR", &request_.output, "Folder to write; an older web map is replaced"}
                  .needed()
                  .offering(Offer::folder),
+             Argument{"--aoi", "POLYGONS", &request_.aoi,
+                      "Area of interest, in any CRS of the body: show the landmarks inside"}
+                 .offering(Offer::file),
              Argument{"--type", "TYPE", &request_.types, "Landmark type to show; may be repeated"}.or_else(
                  "all types"),
              Argument{"--min-confidence", "C", &request_.min_confidence,

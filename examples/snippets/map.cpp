@@ -179,7 +179,8 @@ void import_table() {
 
 void deliver() {
   //! [deliver]
-  geodb::check_before_copy("survey.gpkg");  // throws the first finding
+  geodb::check_before_copy("survey.gpkg");     // throws the first finding
+  geodb::check_before_reading("survey.gpkg");  // the same, before tables and reports
   for (const geodb::Finding& finding : geodb::validate_map("survey.gpkg"))
     std::cout << finding.code << ": " << finding.text << '\n';
   exporters::export_map("survey.gpkg", "survey.fgb", {.overwrite = true});

@@ -20,6 +20,7 @@
 #include "exporters/report/script_policy.hpp"
 #include "exporters/report/size_frequency.hpp"
 #include "geodb/map_store.hpp"
+#include "geodb/validate_map.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -111,6 +112,7 @@ std::string page(const geodb::MapStore& map, const std::string& title, const Rep
 
 void write_report(const std::filesystem::path& map_path, const std::filesystem::path& html,
                   const ReportOptions& options) {
+  geodb::check_before_reading(map_path);
   const geodb::MapStore map = geodb::MapStore::open(map_path);
   const std::string title = options.title.empty() ? title_of(map_path.stem().string()) : options.title;
   write_file(html, page(map, title, options));

@@ -211,6 +211,7 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
   job.summary.driver = format.driver;
   job.summary.crs = job.crs.id();
 
+  if (format.driver != "GPKG") geodb::check_before_reading(map_path);
   const auto files = output_files(format, out, types);
   if (format.is_file)
     for (const OutputFile& file : files) refuse_existing(file.path, options.overwrite);

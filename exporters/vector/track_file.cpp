@@ -80,6 +80,17 @@ std::size_t columns_of(const TrackOutput& output) {
   return kColumns.size() - !output.timing;  // times are the last column
 }
 
+/// Returns the cell that names the CRS of the positions, with the comma before it; empty for the map frame
+/// and local CRSs, where both agree.
+std::string crs_cell(const TrackOutput& output) {
+  if (!output.frame || output.frame->crs().kind() == CrsKind::local) return {};
+  const Crs& crs = output.frame->crs();
+  if (!crs.code().empty()) return "," + crs.id();
+  std::string quoted = ",\"";
+  for (const char c : crs.wkt2()) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
 constexpr std::array<std::size_t, 4> kCounts{11, 12, 13, 18};  // indices of kColumns
 constexpr double kMaxCount = 1e6, kMaxTime = 1e15;             // no drive has more sightings or seconds
 
@@ -106,6 +117,70 @@ localization::TrackRow row_of(const Values& v) {
   return row;
 }
 
+/// Converts a row from the frame's CRS, as values_of() converts it to that.
+void to_map_frame(localization::TrackRow& row, const LocalFrame& frame) {
+  const Eigen::Vector3d at = frame.map_frame_from_crs({{row.at.pose.x, row.at.pose.y, row.z}}).xyz;
+  const double rotation = grid_rotation(frame, at.head<2>());
+  row.at.pose = {at.x(), at.y(), localization::wrap_angle(row.at.pose.yaw - rotation)};
+  row.at.covariance = rotate_axes(row.at.covariance, -rotation);
+}
+
+/// Returns the separator of a header.
+char separator_of(std::string_view line) {
+  for (const char c : {',', ';', '\t'})
+    if (line.find(c) != std::string_view::npos) return c;
+  return ',';
+}
+
+/// Returns the cells of a line without the blanks about them; double quotes enclose separators.
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<std::string> cells(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    const char c = line[i];
+    if (c == '"' && quoted && i + 1 < line.size() && line[i + 1] == '"')
+      cells.back() += line[++i];
+    else if (c == '"')
+      quoted = !quoted;
+    else if (c == separator && !quoted)
+      cells.emplace_back();
+    else
+      cells.back() += c;
+  }
+  for (std::string& cell : cells) {
+    const std::size_t first = cell.find_first_not_of(" \t\r"), last = cell.find_last_not_of(" \t\r");
+    cell = first == std::string::npos ? "" : cell.substr(first, last - first + 1);
+  }
+  return cells;
+}
+
+constexpr std::size_t kCrs = kColumns.size() + 1;
+
+/// Columns of a file: indices of kColumns, kCrs, or kColumns.size() for others.
+struct Header {
+  std::vector<std::size_t> columns;
+  std::array<bool, kColumns.size()> found{};
+};
+
+Header read_header(std::string_view line, char separator) {
+  Header header;
+  for (const std::string& name : cells_of(line, separator)) {
+    std::size_t i = 0;
+    while (i < kColumns.size() && name != kColumns[i]) ++i;
+    if (i < kColumns.size()) header.found[i] = true;
+    header.columns.push_back(name == "crs" ? kCrs : i);
+  }
+  return header;
+}
+
+/// Returns the finite number that a cell is.
+std::optional<double> number_of(std::string_view cell) {
+  double value = 0;
+  const auto [rest, problem] = std::from_chars(cell.data(), cell.data() + cell.size(), value);
+  if (problem != std::errc() || rest != cell.data() + cell.size() || !std::isfinite(value)) return {};
+  return value;
+}
+
 localization::Track in_order_of_time(localization::Track track) {
   std::ranges::stable_sort(track.rows, {}, &localization::TrackRow::t);
   return track;
@@ -118,7 +193,8 @@ void write_track_csv(const fs::path& file, const localization::Track& track, con
   const std::size_t columns = columns_of(output);
   for (std::size_t i = 0; i < columns; ++i)
     fmt::format_to(std::back_inserter(text), "{}{}", i ? "," : "", kColumns[i]);
-  text.push_back('\n');
+  const std::string crs = crs_cell(output);
+  fmt::format_to(std::back_inserter(text), "{}\n", crs.empty() ? "" : ",crs");
   const bool wrong_known = knows_wrong_matches(track);
   const bool degrees = output.frame && output.crs && output.crs->kind() == CrsKind::geographic;
   for (const localization::TrackRow& row : track.rows) {
@@ -130,7 +206,7 @@ void write_track_csv(const fs::path& file, const localization::Track& track, con
     for (std::size_t i = 11; i < 15; ++i)
       fmt::format_to(std::back_inserter(text), "{}", std::isnan(v[i]) ? "," : fmt::format(",{:g}", v[i]));
     for (std::size_t i = 15; i < columns; ++i) fmt::format_to(std::back_inserter(text), ",{:.6g}", v[i]);
-    text.push_back('\n');
+    fmt::format_to(std::back_inserter(text), "{}\n", crs);
   }
   write_file(file, fmt::to_string(text));
 }
@@ -174,57 +250,77 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
   geodb::replace_map(aside);
 }
 
-localization::Track read_track_csv(const fs::path& file) {
-  const std::string content = read_text(file, "the track");
-  if (begins_like_tum(content)) return in_order_of_time(read_track_tum(content, file));
+localization::Track read_track(const fs::path& file, const LocalFrame* frame) {
+  TrackFile read = read_track_file(file);
+  if (read.crs.empty()) return std::move(read.track);
+  const std::string name = Crs::from_text(read.crs).id();
+  if (!frame)
+    throw Error(ErrorCode::usage, fmt::format("the track is in {}, not in the frame of its map", name),
+                file.string(), "give --map MAP, or write the track without --crs");
+  if (!frame->crs().same_as(Crs::from_text(read.crs)))
+    throw Error(ErrorCode::usage, fmt::format("the track is in {}, the map in {}", name, frame->crs().id()),
+                file.string(), "give the map of this track");
+  for (localization::TrackRow& row : read.track.rows) to_map_frame(row, *frame);
+  return std::move(read.track);
+}
+
+TrackFile read_track_file(const fs::path& file) {
+  std::string content = read_text(file, "the track");
+  if (content.starts_with("\xEF\xBB\xBF")) content.erase(0, 3);
+  if (begins_like_tum(content)) return {in_order_of_time(read_track_tum(content, file)), {}};
   std::istringstream in(content);
   std::string line;
   if (!std::getline(in, line))
     throw Error(ErrorCode::input, "the track is empty", file.string(), "waymark localize writes such files");
-  std::vector<std::size_t> column;  // index in kColumns by column of the file; kColumns.size(): none
-  std::array<bool, kColumns.size()> found{};
-  std::istringstream names(line);
-  for (std::string name; std::getline(names, name, ',');) {
-    while (!name.empty() && name.back() <= ' ') name.pop_back();
-    std::size_t i = 0;
-    while (i < kColumns.size() && name != kColumns[i]) ++i;
-    column.push_back(i);
-    if (i < found.size()) found[i] = true;
-  }
-  if (!found[0] || !found[1] || !found[2])
+  const char separator = separator_of(line);
+  const Header header = read_header(line, separator);
+  if (!header.found[0] || !header.found[1] || !header.found[2])
     throw Error(
         ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
         "`waymark localize -o track.csv` writes such files; TUM (t x y z qx qy qz qw) is read as well");
-  localization::Track track;
-  bool wrong_known = found[kWrong];
+  TrackFile read;
+  bool wrong_known = header.found[kWrong];
   for (std::size_t number = 2; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \r\t") == std::string::npos) continue;
+    const std::vector<std::string> cells = cells_of(line, separator);
+    const auto refuse = [&](const std::string& problem, const std::string& hint) {
+      throw Error(ErrorCode::input, problem, fmt::format("{}, line {}", file.string(), number), hint);
+    };
     Values values{};
-    const char *at = line.data(), *end = at + line.size();
-    for (std::size_t i = 0; i < column.size(); ++i) {
-      double value = 0;
-      const bool unknown = column[i] == kWrong && (at == end || *at == ',' || *at == '\r');
-      const auto [rest, problem] =
-          unknown ? std::from_chars_result{at, std::errc()} : std::from_chars(at, end, value);
-      wrong_known = wrong_known && !unknown;
-      const bool last = rest == end || *rest == '\r';
-      if (problem != std::errc() || !std::isfinite(value) || (!last && *rest != ','))
-        throw Error(ErrorCode::input, fmt::format("column {} of the track is no number", i + 1),
-                    fmt::format("{}, line {}", file.string(), number), "");
-      if (column[i] < values.size()) values[column[i]] = value;
-      at = last ? end : rest + 1;
+    for (std::size_t i = 0; i < header.columns.size(); ++i) {
+      const std::string cell = i < cells.size() ? cells[i] : "";
+      const std::size_t column = header.columns[i];
+      if (column == kCrs) {
+        if (number > 2 && cell != read.crs)
+          refuse("the positions of a track are in one CRS", "write each CRS as a track of its own");
+        read.crs = cell;
+        continue;
+      }
+      if (column == kWrong && cell.empty()) {
+        wrong_known = false;
+        continue;
+      }
+      const std::optional<double> value = number_of(cell);
+      if (!value)
+        refuse(fmt::format("column {} of the track is no number", i + 1),
+               separator == ';' && cell.find(',') != std::string::npos ? "write decimal points, not commas"
+                                                                       : "");
+      if (column < values.size()) values[column] = *value;
     }
+    if (cells.size() > header.columns.size())
+      refuse(fmt::format("{} values for {} columns", cells.size(), header.columns.size()),
+             "is a decimal comma or a second separator in the line?");
     if (const auto wrong = impossible_column(values))
-      throw Error(ErrorCode::input,
-                  fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]),
-                  fmt::format("{}, line {}", file.string(), number),
-                  *wrong == 0 ? fmt::format("times are seconds, at most {:g} from 0", kMaxTime)
-                              : "counts are whole numbers from 0 to a million");
-    track.rows.push_back(row_of(values));
+      refuse(fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]),
+             *wrong == 0 ? fmt::format("times are seconds, at most {:g} from 0", kMaxTime)
+                         : "counts are whole numbers from 0 to a million");
+    read.track.rows.push_back(row_of(values));
   }
   if (wrong_known)
-    for (const localization::TrackRow& row : track.rows) track.named += row.matched;
-  return in_order_of_time(std::move(track));
+    for (const localization::TrackRow& row : read.track.rows) read.track.named += row.matched;
+  if (!read.crs.empty()) Crs::from_text(read.crs);  // its errors
+  read.track = in_order_of_time(std::move(read.track));
+  return read;
 }
 
 }  // namespace waymark::exporters

@@ -10,6 +10,7 @@
 #include "exporters/report/map_markers.hpp"
 #include "exporters/report/map_view.hpp"
 #include "exporters/vector/export_columns.hpp"
+#include "exporters/view/view_form.hpp"
 #include "geodb/map_store.hpp"
 
 namespace waymark::exporters {
@@ -74,16 +75,18 @@ ViewLayer view_layer(const LandmarkSection& section, const ViewFrame& frame, std
   ViewLayer layer{.name = type.name,
                   .title = title_of(type.name),
                   .colour = type.colour,
-                  .shape = solid_name(type),
+                  .shape = view_shape(type),
                   .total = section.count,
                   .features = {},
                   .landmarks = {}};
   for (std::size_t i = 0; i < type.features.size(); ++i) layer.features.push_back(view_feature(section, i));
+  const bool oriented = is_oriented(layer.shape);
   for (const Landmark& landmark : section.landmarks) {
     if (layer.landmarks.size() == max_count) break;
     const Eigen::Vector3d at = frame.from_crs(landmark.position);
-    if (at.allFinite() && at.norm() <= max_distance)
-      layer.landmarks.push_back(view_landmark(landmark, type, frame, at));
+    if (!(at.allFinite() && at.norm() <= max_distance)) continue;
+    layer.landmarks.push_back(view_landmark(landmark, type, frame, at));
+    if (oriented) layer.landmarks.back().form = view_form(landmark, type, frame);
   }
   return layer;
 }

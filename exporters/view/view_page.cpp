@@ -11,6 +11,7 @@
 #include "exporters/report/base64.hpp"
 #include "exporters/report/script_policy.hpp"
 #include "exporters/view/view_assets.hpp"
+#include "exporters/view/view_form.hpp"
 
 namespace waymark::exporters {
 namespace {
@@ -62,10 +63,11 @@ ViewJson layer_json(const ViewLayer& layer) {
                         {"unit", f.format.unit},
                         {"factor", f.format.factor},
                         {"decimals", f.format.decimals}});
-  std::vector<float> numbers, values;
+  std::vector<float> numbers, values, forms;
   std::vector<std::int32_t> counts;
   std::vector<float> evidence;
   ViewJson uids = ViewJson::array(), positions = ViewJson::array(), labels = ViewJson::array();
+  const bool oriented = is_oriented(layer.shape);
   for (const ViewLandmark& l : layer.landmarks) {
     for (const float n : {l.at.x(), l.at.y(), l.at.z(), l.radius, l.height, l.confidence, l.quality, l.sd[0],
                           l.sd[1], l.sd[2]})
@@ -78,6 +80,9 @@ ViewJson layer_json(const ViewLayer& layer) {
       evidence.push_back(static_cast<float>(e.source));
       evidence.push_back(e.confidence);
     }
+    if (oriented)
+      for (const float n : {l.form.turn, l.form.length, l.form.width, l.form.opening, l.form.side})
+        forms.push_back(n);
     uids.push_back(l.uid);
     positions.push_back(l.position);
     labels.push_back(l.label);
@@ -92,6 +97,7 @@ ViewJson layer_json(const ViewLayer& layer) {
           {"positions", positions},
           {"labels", labels},
           {"numbers", packed(numbers)},
+          {"forms", packed(forms)},
           {"values", packed(values)},
           {"counts", packed(counts)},
           {"evidence", packed(evidence)}};

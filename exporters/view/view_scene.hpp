@@ -31,6 +31,13 @@ struct ViewEvidence {
   float confidence = 0;
 };
 
+/// Direction and sizes of a landmark that is no solid of revolution; NaN: unknown.
+struct ViewForm {
+  float turn = 0;               ///< radians from east to north: normal of a face, or long side
+  float length = 0, width = 0;  ///< metres
+  float opening = 0, side = 0;  ///< of a corner, radians; of a wall's end, 1 left or -1 right of the face
+};
+
 /// A landmark as the viewer draws and describes it.
 struct ViewLandmark {
   std::string uid = {}, position = {}, label = {};
@@ -43,12 +50,14 @@ struct ViewLandmark {
       {};                                   ///< value (NaN: unknown) and standard deviation (0: unknown)
   std::vector<ViewEvidence> evidence = {};  ///< the first few
   std::int32_t observations = 0;            ///< of all its observations
+  ViewForm form = {};                       ///< of oriented shapes
 };
 
 /// Landmarks of one type.
 struct ViewLayer {
   std::string name = {}, title = {}, colour = {};
-  std::string shape = {};  ///< point, sphere, cylinder, cone, canopy or bowl
+  std::string shape =
+      {};  ///< point, sphere, cylinder, cone, canopy, bowl, or an oriented one (view_form.hpp)
   std::int64_t total = 0;  ///< in the map
   std::vector<ViewFeature> features = {};
   std::vector<ViewLandmark> landmarks = {};  ///< the foremost first

@@ -50,7 +50,7 @@ class RuleImport {
  public:
   RuleImport(ElementSource& source, const std::string& path, const TypeRegistry& types,
              const ImportRules& rules, const std::string& table_crs, const std::string& map_crs,
-             const std::function<void(Landmark&&)>& take)
+             const std::function<void(Landmark&&)>& take, const std::string& aoi)
       : source_(source),
         types_(types),
         take_(take),
@@ -59,6 +59,7 @@ class RuleImport {
         crs_(table_crs.empty() ? source.crs().value_or(positions_.map_crs()) : Crs::from_text(table_crs)),
         frame_(crs_) {
     choose_unit(rules.unit);
+    positions_.keep_inside(aoi);
     std::size_t number = 0;
     for (const ImportRule& rule : rules.rules) rules_.push_back(bind_rule(rule, types, ++number));
     result_.crs = positions_.map_crs();
@@ -244,6 +245,11 @@ class RuleImport {
     std::string reasons;
     for (const auto& [reason, count] : result_.rejected_by_reason)
       reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+    if (const auto outside = result_.rejected_by_reason.find(kOutsideArea);
+        outside != result_.rejected_by_reason.end() && outside->second == result_.rows)
+      throw Error(ErrorCode::input,
+                  fmt::format("none of the {} shapes lies in the area of interest", result_.rows),
+                  header_.path, "check the CRSs of the file and of the area");
     throw Error(ErrorCode::input,
                 fmt::format("none of the {} shapes is plausible: {}", result_.rows, reasons), header_.path,
                 "lengths are metres; a file in degrees without a CRS needs --crs EPSG:4326");
@@ -269,8 +275,9 @@ class RuleImport {
 
 ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,
                               const ImportRules& rules, const std::string& table_crs,
-                              const std::string& map_crs, const std::function<void(Landmark&&)>& take) {
-  return RuleImport(source, path, types, rules, table_crs, map_crs, take).run();
+                              const std::string& map_crs, const std::function<void(Landmark&&)>& take,
+                              const std::string& aoi) {
+  return RuleImport(source, path, types, rules, table_crs, map_crs, take, aoi).run();
 }
 
 }  // namespace waymark::importers

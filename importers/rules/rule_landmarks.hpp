@@ -19,10 +19,11 @@ namespace waymark::importers {
 ///   of the file, else metres.
 /// - Rules that use the outside of outlines, corners or ends read the file twice. 40 to 70 bytes per vertex
 ///   are then kept in memory.
-/// `table_crs` and `map_crs` are those of TableImport. Throws Error{usage} for rules with an unknown type,
-/// feature or attribute, Error{input} if no element matches or no landmark results.
+/// `table_crs`, `map_crs` and `aoi` are those of TableImport. Throws Error{usage} for rules with an unknown
+/// type, feature or attribute, Error{input} if no element matches or no landmark results.
 ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,
                               const ImportRules& rules, const std::string& table_crs,
-                              const std::string& map_crs, const std::function<void(Landmark&&)>& take);
+                              const std::string& map_crs, const std::function<void(Landmark&&)>& take,
+                              const std::string& aoi = {});
 
 }  // namespace waymark::importers

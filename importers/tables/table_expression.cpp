@@ -245,6 +245,17 @@ bool TableExpression::is_column() const {
   return root_->column != Node::kNoColumn;
 }
 
+void TableExpression::add_columns(std::set<std::size_t>& used) const {
+  std::vector<const Node*> open{root_.get()};
+  while (!open.empty()) {
+    const Node* node = open.back();
+    open.pop_back();
+    if (node->column != Node::kNoColumn) used.insert(node->column);
+    for (const auto& part : node->of)
+      if (part) open.push_back(part.get());
+  }
+}
+
 const std::string& TableExpression::word(const TableRow& row) const {
   if (!is_column()) throw Error(ErrorCode::usage, "a name must be a column, not '" + text_ + "'");
   return row.cells[root_->column];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <memory>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -28,6 +29,8 @@ class TableExpression {
   /// Returns the text of the cell. Throws Error{usage} if the expression is more than a column name.
   const std::string& word(const TableRow& row) const;
   bool is_column() const;
+  /// Adds the indices of the columns that the expression uses.
+  void add_columns(std::set<std::size_t>& used) const;
 
   struct Node;
 

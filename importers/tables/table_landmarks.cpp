@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string_view>
 #include <unordered_set>
 #include <utility>
@@ -48,6 +49,9 @@ class RowTypes {
         named.push_back((*types_)[id].name);
     return named;
   }
+
+  /// Returns the index of the column that holds the types, if there is one.
+  std::optional<std::size_t> column() const { return column_; }
 
   /// Returns the type of a row; `std::nullopt` for another or unknown type.
   std::optional<TypeId> of(const TableRow& row) const {
@@ -194,11 +198,29 @@ ColumnBindings bindings_of(const TableHeader& header, const TypeRegistry& types,
   }
 }
 
+/// Returns the columns that no binding uses, in the order of the table; without those of geometries.
+std::vector<std::string> unused_columns(const TableHeader& header, std::optional<std::size_t> of_types,
+                                        const std::vector<const ColumnBindings*>& all) {
+  std::set<std::size_t> used;
+  if (of_types) used.insert(*of_types);
+  for (const ColumnBindings* bindings : all)
+    for (const auto& [target, expression] : *bindings) expression.add_columns(used);
+  std::vector<std::string> unused;
+  for (std::size_t i = 0; i < header.columns.size(); ++i)
+    if (!used.contains(i) && !header.columns[i].starts_with("geom_")) unused.push_back(header.columns[i]);
+  return unused;
+}
+
 void refuse_empty_result(const ImportedTable& result, const std::string& path) {
   if (result.landmarks > 0 || result.rows == 0) return;
   std::string reasons;
   for (const auto& [reason, count] : result.rejected_by_reason)
     reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
+  if (const auto outside = result.rejected_by_reason.find(kOutsideArea);
+      outside != result.rejected_by_reason.end() && outside->second == result.rows)
+    throw Error(ErrorCode::input,
+                fmt::format("none of the {} rows lies in the area of interest", result.rows), path,
+                "check the CRSs of the table and of the area");
   throw Error(ErrorCode::input, fmt::format("none of the {} rows is plausible: {}", result.rows, reasons),
               path,
               "lengths are metres and angles radians: give the unit, e.g. --columns radius=diam_km*500; "
@@ -225,7 +247,11 @@ ImportedTable import_table(TableSource& table, const TypeRegistry& types, const 
       result.bindings.push_back(fmt::format("{}: {} = {}", type, one.target, one.expression));
     bindings_of_type.emplace(id, bindings_of(header, types, result.types, how.columns + "," + columns));
   }
+  std::vector<const ColumnBindings*> all{&bindings};
+  for (const auto& [type, own] : bindings_of_type) all.push_back(&own);
+  result.unused = unused_columns(header, row_types.column(), all);
   TablePositions positions(header, how.table_crs, how.map_crs, names_imply_degrees(bindings));
+  positions.keep_inside(how.aoi);
   result.crs = positions.map_crs();
 
   Rejections rejections(result, table);

@@ -21,8 +21,12 @@ struct TableImport {
   std::map<std::string, std::string> columns_of_type = {};  ///< landmark type -> more `columns`, for its rows
   std::string table_crs;  ///< of the table's positions, overriding the table's own; empty: the table's own
   std::string map_crs;    ///< of the map; empty: the table's
+  std::string aoi = {};   ///< file of polygons: rows outside are rejected; empty: none are
   bool skip_bad_rows = false;  ///< reject rows that cannot be read instead of throwing
 };
+
+/// Reason of rows outside the area of interest.
+inline constexpr const char* kOutsideArea = "outside the area of interest";
 
 /// What was read of a table, and the rows that were rejected.
 struct ImportedTable {
@@ -34,6 +38,7 @@ struct ImportedTable {
   std::map<std::string, std::int64_t> rejected_by_reason;
   std::string first_rejection;        ///< location and reason; empty: none
   std::vector<std::string> bindings;  ///< "radius = Diam_km*1000/2"; "depth" for a column of that name
+  std::vector<std::string> unused;    ///< columns of the table that nothing was taken from
   std::vector<std::string> warnings;
 };
 

@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/rotate_axes.hpp"
 #include "geo/axes_rotation.hpp"
+#include "importers/tables/table_landmarks.hpp"
 
 namespace waymark::importers {
 namespace {
@@ -55,11 +56,17 @@ std::string TablePositions::transform_to_map(Point<MapCrs>& position) {
   if (table_.kind() == CrsKind::geographic && std::abs(x) > 720) return "longitude beyond two turns";
   ++positions_;
   like_degrees_ += std::abs(x) <= 360 && std::abs(y) <= 90;
-  if (!transform_) return {};
-  const auto there = (*transform_)(x, y);
-  if (!std::isfinite(there.x) || !std::isfinite(there.y)) return "no position in " + map_.id();
-  position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
+  if (transform_) {
+    const auto there = (*transform_)(x, y);
+    if (!std::isfinite(there.x) || !std::isfinite(there.y)) return "no position in " + map_.id();
+    position.xyz.head<2>() = Eigen::Vector2d(there.x, there.y);
+  }
+  if (area_ && !area_->contains(position.xyz.x(), position.xyz.y())) return kOutsideArea;
   return {};
+}
+
+void TablePositions::keep_inside(const std::string& aoi) {
+  if (!aoi.empty()) area_ = read_area_of_interest(aoi, map_);
 }
 
 std::string TablePositions::transform_to_map(Landmark& landmark, std::span<const FeatureSpec> specs,

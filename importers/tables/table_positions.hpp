@@ -9,6 +9,7 @@
 #include "core/frames.hpp"
 #include "core/landmark.hpp"
 #include "geo/crs.hpp"
+#include "importers/tables/area_of_interest.hpp"
 #include "importers/tables/table.hpp"
 namespace waymark::importers {
 
@@ -27,7 +28,10 @@ class TablePositions {
                  bool named_degrees);
 
   const Crs& map_crs() const { return map_; }
-  /// Transforms the position. Returns the reason if that is impossible, else an empty text.
+  /// Rejects positions outside the polygons of a file, in any CRS of the body. Throws as
+  /// read_area_of_interest().
+  void keep_inside(const std::string& aoi);
+  /// Transforms the position. Returns the reason if that is impossible or it is unwanted, else an empty text.
   std::string transform_to_map(Point<MapCrs>& position);
   /// Transforms the position, the covariance and the angles among the features, likewise.
   std::string transform_to_map(Landmark& landmark, std::span<const FeatureSpec> specs, AngleReference angles);
@@ -39,6 +43,7 @@ class TablePositions {
   Crs table_ = Crs::local(), map_ = Crs::local();
   std::optional<CrsTransform> transform_;
   std::optional<CrsTransform> to_degrees_;  // of the table, if its axes are not east and north
+  std::optional<Area> area_;                // in the map's CRS
   bool guessed_ = false;                    // the table names no CRS: the map's is assumed
   std::vector<std::string> notes_;
   std::int64_t positions_ = 0, like_degrees_ = 0;

@@ -24,6 +24,7 @@ const Keywords<workflows::DetectRequest>& detect_keywords() {
                               .add("min_diameter", &R::min_diameter)
                               .add("max_diameter", &R::max_diameter)
                               .add("min_confidence", &R::min_confidence)
+                              .add("aoi", &R::aoi)
                               .add("band", &R::band)
                               .add("tile_pixels", &R::piece)
                               .add("threads", &R::threads);

@@ -16,6 +16,7 @@ const Keywords<workflows::InventoryRequest>& inventory_keywords() {
                               .add("output", &R::output)
                               .add("stands", &R::stands)
                               .add("stands_layer", &R::stands_layer)
+                              .add("aoi", &R::aoi)
                               .add("grid", &R::grid)
                               .add("allometry", &R::allometry)
                               .add("volume", &R::volume)

@@ -149,6 +149,7 @@ const Keywords<workflows::MergeRequest>& merge_keywords() {
   static const auto all = Keywords<R>()
                               .add("maps", &R::maps)
                               .add("output", &R::result)
+                              .add("aoi", &R::aoi)
                               .add("changes", &R::changes)
                               .add("max_move", &R::max_move);
   return all;

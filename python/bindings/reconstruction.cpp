@@ -24,6 +24,7 @@ const Keywords<workflows::ReconstructRequest>& reconstruct_keywords() {
                               .add("dem", &R::dem)
                               .add("crs", &R::crs)
                               .add("cell", &R::cell)
+                              .add("aoi", &R::aoi)
                               .add("until", &R::until)
                               .add("map", &R::map)
                               .add("work", &R::work)

@@ -12,6 +12,7 @@ const Keywords<workflows::WebMapRequest>& web_keywords() {
   static const auto all = Keywords<R>()
                               .add("map", &R::map)
                               .add("output", &R::output)
+                              .add("aoi", &R::aoi)
                               .add("types", &R::types)
                               .add("min_confidence", &R::min_confidence)
                               .add("dem", &R::dem)

@@ -15,6 +15,11 @@ TEST(Error, SaysWhatWhereAndWhatToDo) {
   EXPECT_STREQ(Error(ErrorCode::input, "no more").what(), "no more");
 }
 
+TEST(Error, ANameWithALineBreakStaysOnItsLine) {
+  EXPECT_STREQ(Error(ErrorCode::input, "there is no such file", "de\nm.tif", "check the path").what(),
+               "there is no such file\n  de\\nm.tif\n  check the path");
+}
+
 TEST(Error, OnlyWrongUsageExitsWithTwo) {
   EXPECT_EQ(exit_code(ErrorCode::usage), 2);
   EXPECT_EQ(exit_code(ErrorCode::input), 1);

@@ -193,7 +193,7 @@ std::vector<Reader> all_readers() {
       {"log_carmen", "drive.log", log_reader("carmen")},
       {"rosbag2", "bag.db3", log_reader("rosbag2")},
       {"mcap", "bag.mcap", log_reader("mcap")},
-      {"track", "track.csv", [](const std::string& path) { exporters::read_track_csv(path); }},
+      {"track", "track.csv", [](const std::string& path) { exporters::read_track_file(path); }},
       {"job", "job.json", read_job},
       {"scenario", "scenario.json",
        [](const std::string& path) { testbed::read_scenario(text_of_file(path), path); }},

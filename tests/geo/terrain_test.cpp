@@ -152,6 +152,29 @@ TEST(Terrain, AWallCastsItsShadow) {
   EXPECT_FALSE(terrain.in_shadow({{15, 2, 4}}, sun));
 }
 
+TEST(Terrain, ReachesASegmentWhereItsHeightsDo) {
+  int reached = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Terrain terrain = rough(seed, 33, 33);
+    Random random(seed, "segments");
+    for (int i = 0; i < 50; ++i) {
+      const auto point = [&] {
+        return Eigen::Vector3d(random.uniform(95, 137), random.uniform(163, 205), random.uniform(0, 9));
+      };
+      const Eigen::Vector3d a = point(), b = point();
+      double lowest = 1e9;  // of the segment above the terrain, by samples
+      for (int k = 0; k <= 2000; ++k) {
+        const Eigen::Vector3d at = a + (b - a) * k / 2000.0;
+        if (const auto ground = terrain.height(at.x(), at.y())) lowest = std::min(lowest, at.z() - *ground);
+      }
+      if (std::abs(lowest) < 0.05) continue;  // grazing: between two samples the terrain may be higher
+      reached += lowest < 0;
+      EXPECT_EQ(terrain.reaches({a}, {b}), lowest < 0) << seed << ' ' << i << ' ' << lowest;
+    }
+  }
+  EXPECT_GT(reached, 100);
+}
+
 TEST(Terrain, ARayAlongACellBorderIsNotLost) {
   const Terrain terrain = rough(5, 33, 33);
   for (int i = 0; i <= 32; ++i) {

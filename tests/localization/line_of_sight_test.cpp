@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 
+#include "core/random.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/sighting_score.hpp"
 #include "made_world.hpp"
@@ -30,6 +32,62 @@ TEST(LineOfSight, HillsHideAndUnknownTerrainDoesNot) {
   EXPECT_TRUE(sees({0, 3, 0}, {0, 3}));
   EXPECT_TRUE(terrain_line_of_sight(wall, {.sensor_height = 10, .landmark_height = 10})({0, 3, 0}, {10, 3}));
   EXPECT_FALSE(terrain_line_of_sight({}, {}));
+}
+
+/// Hills of a random surface, 60 x 60 nodes 20 m apart.
+Terrain hills(unsigned seed) {
+  Random random(seed, "hills");
+  Grid<float> heights(60, 60);
+  for (float& h : heights.cells()) h = static_cast<float>(random.uniform(0, 12));
+  return Terrain(std::move(heights), -600, 600, 20, 20);
+}
+
+TEST(LineOfSight, OnHeightsInMemoryIsTheSampledOne) {
+  const LineOfSightOptions options{.sensor_height = 2, .landmark_height = 3, .step = 0.05};
+  int hidden = 0, different = 0;
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    const Terrain terrain = hills(seed);
+    const LineOfSight fast = terrain_line_of_sight(terrain, options, 0, 0);
+    Random random(seed, "lines");
+    for (int i = 0; i < 100; ++i) {
+      const Pose2 sensor{random.uniform(-500, 500), random.uniform(-500, 500), 0};
+      const Eigen::Vector2d landmark(random.uniform(-500, 500), random.uniform(-500, 500));
+      const double distance = (landmark - sensor.at()).norm();
+      if (distance < 30) continue;
+      // The cell before the landmark does not hide it: the slow twin ends there.
+      bool free = true;
+      const double eye = *terrain.height(sensor.x, sensor.y) + 2,
+                   top = *terrain.height(landmark.x(), landmark.y()) + 3;
+      for (double t = options.step; t < distance - 20 && free; t += options.step) {
+        const Eigen::Vector2d at = sensor.at() + (landmark - sensor.at()) * (t / distance);
+        free = !(*terrain.height(at.x(), at.y()) > eye + (top - eye) * t / distance);
+      }
+      hidden += !free;
+      different += fast(sensor, landmark) != free;
+    }
+  }
+  EXPECT_GT(hidden, 300);
+  EXPECT_LE(different, 2) << "a line that grazes a ridge between two samples";
+}
+
+TEST(LineOfSight, TheBodyCurvesAwayBelowLongLines) {
+  // A plain: from 2 m the horizon is 5 km away, and 4 m are seen up to 12 km.
+  const Terrain plain(Grid<float>(400, 3, 0.F), 0, 100, 100, 100);
+  const LineOfSightOptions low{.sensor_height = 2, .landmark_height = 4, .step = 1};
+  const auto sees = [&](double distance, double radius) {
+    return terrain_line_of_sight(plain, low, radius, 0)({10, 0, 0}, {10 + distance, 0});
+  };
+  EXPECT_TRUE(sees(30000, 0));
+  EXPECT_TRUE(sees(11500, 6371000));  // sqrt(2 R 2) + sqrt(2 R 4) = 12.19 km
+  EXPECT_FALSE(sees(13000, 6371000));
+}
+
+TEST(LineOfSight, UnknownHeightsInMemoryHideNothing) {
+  Grid<float> heights(20, 20, 0.F);
+  for (std::int64_t r = 0; r < 20; ++r) heights(10, r) = std::numeric_limits<float>::quiet_NaN();
+  const LineOfSight sees = terrain_line_of_sight(Terrain(heights, 0, 19, 1, 1), {}, 0, 0);
+  EXPECT_TRUE(sees({2, 5, 0}, {18, 5}));
+  EXPECT_TRUE(sees({-50, 5, 0}, {18, 5})) << "the sensor stands outside";
 }
 
 TEST(LineOfSight, HiddenLandmarksAreThoseOfASearchOfAll) {

@@ -119,6 +119,19 @@ TEST(Observability, LandmarksBehindAHillAreNotSeen) {
   EXPECT_GT(behind.position_sd, open.position_sd);
 }
 
+TEST(Observability, AFieldIsThatOfItsPositions) {
+  const auto map = row_of_landmarks(8);
+  for (const double view : {360.0, 90.0}) {
+    const ObservabilityRules rules = laser(view);
+    const ObservabilityField field(map, rules);
+    for (const double y : {0.0, 8.0, 25.0, 500.0}) {
+      const auto fast = observability_bands(field.at(12, y)),
+                 slow = observability_bands(observability_at(12, y, map, rules));
+      EXPECT_EQ(fast, slow) << y;
+    }
+  }
+}
+
 TEST(Observability, ALineOfSightIsTestedOncePerPlace) {
   ObservabilityRules rules = laser(120);  // eight headings
   int tests = 0;

@@ -6,11 +6,15 @@
 
 #include <chrono>
 #include <filesystem>
+#include <optional>
+#include <utility>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/output_error.hpp"
 #include "geodb/write_map.hpp"
+#include "importers/tables/area_of_interest.hpp"
+#include "importers/tables/table_landmarks.hpp"
 #include "workflows/detection/detection_plan.hpp"
 #include "workflows/detection/run_detection.hpp"
 #include "workflows/output_path.hpp"
@@ -27,6 +31,7 @@ struct DetectionOutput {
   std::string path;
   std::string image;  // file that was searched
   std::string command_line;
+  std::int64_t outside = 0;  // detections outside the area of interest
   std::chrono::system_clock::time_point started;
 };
 
@@ -42,7 +47,9 @@ geodb::RunRecord run_record(const exporters::ImageDetections& found, const Detec
   pipeline::StageReport stage;
   stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
   stage.units = stage.made = 1;
-  stage.counts.in = stage.counts.out = static_cast<std::int64_t>(found.detections.size());
+  stage.counts.out = static_cast<std::int64_t>(found.detections.size());
+  stage.counts.in = stage.counts.out + output.outside;
+  if (output.outside > 0) stage.counts.rejected[importers::kOutsideArea] = output.outside;
   return make_single_step_record(std::move(stage), output.image, output.command_line, output.started);
 }
 
@@ -66,6 +73,42 @@ void check_detection_output(const std::string& output) {
                 "name a file in it: -o " + (path / "detections.csv").string());
 }
 
+/// Returns the area of the request in the CRS of the image. Throws Error for an image without georeference
+/// and an area that does not meet it.
+std::optional<importers::Area> area_of(const DetectRequest& request, const ImageInfo& image) {
+  if (request.aoi.empty()) return {};
+  if (!image.ortho)
+    throw Error(ErrorCode::usage, "the image has no position on the ground, so no area of interest applies",
+                image.path, "leave --aoi out, or give a georeferenced image in metres");
+  importers::Area area = importers::read_area_of_interest(request.aoi, image.crs);
+  const Georeference& at = *image.ortho;
+  const double right = static_cast<double>(image.columns) - 0.5,
+               bottom = static_cast<double>(image.rows) - 0.5;
+  Eigen::AlignedBox2d box(Eigen::Vector2d(at.x(-0.5), at.y(bottom)));
+  box.extend(Eigen::Vector2d(at.x(right), at.y(-0.5)));
+  if (!box.intersects(area.box()))
+    throw Error(ErrorCode::input, "the area of interest does not meet the image", request.aoi,
+                fmt::format("the image covers x {:.10g} to {:.10g}, y {:.10g} to {:.10g} in {}",
+                            box.min().x(), box.max().x(), box.min().y(), box.max().y(), image.crs.id()));
+  return area;
+}
+
+/// Drops the detections whose centres lie outside. Returns their number.
+std::int64_t keep_inside(const importers::Area& area, exporters::ImageDetections& found) {
+  std::vector<Detection> kept;
+  std::vector<FeatureSet> features;
+  for (std::size_t i = 0; i < found.detections.size(); ++i) {
+    const PixelEllipse& outline = found.detections[i].outline;
+    if (!area.contains(found.georeference->x(outline.x), found.georeference->y(outline.y))) continue;
+    kept.push_back(found.detections[i]);
+    if (!found.features.empty()) features.push_back(found.features[i]);
+  }
+  const std::size_t dropped = found.detections.size() - kept.size();
+  found.detections = std::move(kept);
+  found.features = std::move(features);
+  return static_cast<std::int64_t>(dropped);
+}
+
 // Writes detections in the format of the output's extension; a GeoPackage with the record of this run.
 void write_detections(const exporters::ImageDetections& found, const DetectionOutput& output,
                       const Callbacks& callbacks) {
@@ -85,17 +128,21 @@ void write_detections(const exporters::ImageDetections& found, const DetectionOu
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   const DetectionPlan plan = plan_detection(request);
   if (!request.output.empty()) check_detection_output(request.output);
+  const std::optional<importers::Area> area = area_of(request, plan.image->info());
   const auto started = std::chrono::system_clock::now();
   for (const std::string& warning : plan.warnings) callbacks.warning(warning);
   DetectResult found = run_detection(plan, request.threads, callbacks.progress);
+  if (area) found.outside = keep_inside(*area, found.detections);
   for (const std::string& warning : found.warnings) callbacks.warning(warning);
   found.warnings.insert(found.warnings.begin(), plan.warnings.begin(), plan.warnings.end());
   if (!found.light.empty()) callbacks.summary(found.light + "\n");
   if (request.output.empty()) return found;
-  const DetectionOutput output{request.output, plan.image->info().path, request.command_line, started};
+  const DetectionOutput output{request.output, plan.image->info().path, request.command_line, found.outside,
+                               started};
   write_detections(found.detections, output, callbacks);
-  callbacks.summary(
-      fmt::format("{}: {} {}\n", request.output, found.detections.detections.size(), request.kind));
+  callbacks.summary(fmt::format("{}: {} {}{}\n", request.output, found.detections.detections.size(),
+                                request.kind,
+                                area ? fmt::format(", {} outside the area of interest", found.outside) : ""));
   return found;
 }
 

@@ -17,6 +17,7 @@ struct DetectRequest {
   std::string crs;     ///< of a georeferenced image that names none or a wrong one
   std::string verifier =
       {};  ///< craters: file that `waymark train craters --labels` wrote; empty: the shipped one
+  std::string aoi = {};  ///< polygons: detections outside are dropped; georeferenced images only; empty: none
   double sun_azimuth = std::numeric_limits<double>::quiet_NaN();    ///< degrees clockwise from map north
   double sun_elevation = std::numeric_limits<double>::quiet_NaN();  ///< degrees above the horizon
   double image_sun_angle =
@@ -34,7 +35,8 @@ struct DetectRequest {
 /// Detections in an image.
 struct DetectResult {
   exporters::ImageDetections detections;
-  std::string light;  ///< estimated direction of the light, for people; empty: it was given
+  std::int64_t outside = 0;  ///< detections dropped because they lie outside the area of interest
+  std::string light;         ///< estimated direction of the light, for people; empty: it was given
   std::vector<std::string> warnings;
 };
 

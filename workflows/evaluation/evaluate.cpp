@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/options/option_reader.hpp"
 #include "exporters/report/track_picture.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "importers/logs/import_log.hpp"
@@ -28,7 +29,34 @@ struct Truth {
   std::vector<localization::StampedPose> poses;
   std::vector<localization::FelledReading> felled;
   bool headings = true;
+  std::string crs = {};  ///< of the poses; empty: the frame of the map
 };
+
+/// Reads a track in the frame of the truth. Throws Error{usage} if one is in a CRS and the other is not.
+localization::Track read_track_beside(const std::string& file, const Truth& truth, const LocalFrame* frame) {
+  if (frame) return exporters::read_track(file, frame);
+  exporters::TrackFile read = exporters::read_track_file(file);
+  const auto name = [](const std::string& crs) {
+    return crs.empty() ? std::string("the frame of a map") : Crs::from_text(crs).id();
+  };
+  const bool same = read.crs.empty()
+                        ? truth.crs.empty()
+                        : !truth.crs.empty() && Crs::from_text(read.crs).same_as(Crs::from_text(truth.crs));
+  if (!same)
+    throw Error(ErrorCode::usage,
+                fmt::format("the track is in {}, the truth in {}", name(read.crs), name(truth.crs)), file,
+                "give --map MAP: both are compared in its frame; a column `crs` of a track names its CRS");
+  if (!read.crs.empty() && Crs::from_text(read.crs).metres_per_unit() != 1)
+    throw Error(ErrorCode::usage, fmt::format("the track is in {}, which is not in metres", name(read.crs)),
+                file, "give --map MAP");
+  return std::move(read.track);
+}
+
+/// Returns the CRS of the true poses; empty for a local one, whose coordinates are those of the map frame.
+std::string crs_of(const localization::RobotLog& log) {
+  if (!log.in_crs || log.crs.empty()) return {};
+  return Crs::from_text(log.crs).kind() == CrsKind::local ? "" : log.crs;
+}
 
 /// Throws if true poses are coordinates that are no metres.
 void check_metres(const localization::RobotLog& log, const std::string& file) {
@@ -44,8 +72,10 @@ Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   const std::string& file = request.truth;
   if (file.ends_with(".csv") || file.ends_with(".tum")) {
     Truth truth;
-    for (const localization::TrackRow& row : exporters::read_track_csv(file).rows)
-      truth.poses.push_back({row.t, row.at.pose});
+    const exporters::TrackFile read =
+        frame ? exporters::TrackFile{exporters::read_track(file, frame)} : exporters::read_track_file(file);
+    truth.crs = read.crs;
+    for (const localization::TrackRow& row : read.track.rows) truth.poses.push_back({row.t, row.at.pose});
     return truth;
   }
   localization::RobotLog log = importers::import_log(file, all_types(), request.log_format);
@@ -53,7 +83,7 @@ Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
     localization::convert_to_map_frame(log, *frame);
   else
     check_metres(log, file);
-  Truth truth{log.truth, log.felled, false};
+  Truth truth{log.truth, log.felled, false, frame ? std::string() : crs_of(log)};
   for (const localization::StampedPose& p : log.truth) truth.headings = truth.headings || p.pose.yaw != 0;
   return truth;
 }
@@ -87,6 +117,7 @@ std::vector<exporters::PictureDot> map_dots(OpenedMap& opened) {
 
 void draw(const TrackEvaluation& request, const localization::Track& track, const Truth& truth,
           OpenedMap* opened) {
+  const LocalFrame* frame = opened ? &opened->map.frame : nullptr;
   if (!request.picture.ends_with(".svg"))
     throw Error(ErrorCode::usage, "a picture of tracks is written as .svg", request.picture);
   exporters::TrackPicture picture{.title = request.align == "none"
@@ -102,7 +133,8 @@ void draw(const TrackEvaluation& request, const localization::Track& track, cons
     if (equals == std::string::npos || equals == 0)
       throw Error(ErrorCode::usage, "--also takes NAME=TRACK.csv, is '" + more + "'", "",
                   "e.g. --also ekf=ekf.csv");
-    picture.tracks.push_back({more.substr(0, equals), exporters::read_track_csv(more.substr(equals + 1))});
+    picture.tracks.push_back(
+        {more.substr(0, equals), read_track_beside(more.substr(equals + 1), truth, frame)});
   }
   picture.tracks.push_back({std::filesystem::path(request.track).stem(), track});
   for (const localization::HarvestedTree& tree : localization::harvested_trees(truth.felled, track))
@@ -199,12 +231,14 @@ std::map<std::string, testbed::Score> evaluate(const LandmarkEvaluation& request
 }
 
 localization::TrackScore evaluate(const TrackEvaluation& request) {
-  const localization::Track track = exporters::read_track_csv(request.track);
+  check_number("--max-gap", request.max_gap, "s", {.help = "", .min = 0, .max = 1e9});
   std::optional<OpenedMap> opened;
   if (!request.map.empty()) opened = open_robot_map(request.map, nullptr);
   const Truth truth = read_truth(request, opened ? &opened->map.frame : nullptr);
   if (truth.poses.empty())
     throw Error(ErrorCode::input, "the truth has no poses", request.truth, "is it a log without true poses?");
+  const localization::Track track =
+      read_track_beside(request.track, truth, opened ? &opened->map.frame : nullptr);
   const localization::TrackAlignment alignment = request.align == "se2" ? localization::TrackAlignment::se2
                                                  : request.align == "sim2"
                                                      ? localization::TrackAlignment::sim2
@@ -218,8 +252,9 @@ localization::TrackScore evaluate(const TrackEvaluation& request) {
 std::vector<localization::TrackErrorAt> track_errors(const TrackEvaluation& request) {
   std::optional<OpenedMap> opened;
   if (!request.map.empty()) opened = open_robot_map(request.map, nullptr);
-  return localization::track_errors(exporters::read_track_csv(request.track),
-                                    read_truth(request, opened ? &opened->map.frame : nullptr).poses,
+  const LocalFrame* frame = opened ? &opened->map.frame : nullptr;
+  const Truth truth = read_truth(request, frame);
+  return localization::track_errors(read_track_beside(request.track, truth, frame), truth.poses,
                                     request.max_gap);
 }
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <utility>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
@@ -17,6 +18,7 @@
 #include "workflows/forest/stand_areas.hpp"
 #include "workflows/forest/stand_figures.hpp"
 #include "workflows/output_path.hpp"
+#include "workflows/query/area_of_map.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -117,7 +119,15 @@ void write_report_page(const InventoryRequest& request, const InventoryResult& r
 
 }  // namespace
 
-InventoryResult inventory(const InventoryRequest& request, const Callbacks& callbacks) {
+InventoryResult inventory(const InventoryRequest& given, const Callbacks& callbacks) {
+  InventoryRequest request = given;
+  if (!request.aoi.empty()) {
+    if (!request.stands.empty() || request.grid != 0)
+      throw Error(ErrorCode::usage, "--aoi exchanges the stands, and --stands or --grid is given, too",
+                  "--aoi", "cut the stands to the area first: ogr2ogr -clipsrc AREA PART.gpkg STANDS");
+    area_of_map(request.aoi, request.map);  // its errors
+    request.stands = std::exchange(request.aoi, {});
+  }
   check_request(request);
   InventoryResult result;
   const auto warn = [&](const std::string& warning) {

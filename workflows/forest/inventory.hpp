@@ -20,10 +20,11 @@ struct InventoryRequest {
   std::string output = {};        ///< .csv, or .gpkg that may be the map itself; empty: no file is written
   std::string stands = {};        ///< layer of polygons in any CRS; empty: the whole map
   std::string stands_layer = {};  ///< of a file that holds several
-  double grid = 0;                ///< metres, side of square cells in place of stands; 0: none
-  std::string allometry = {};     ///< table of stem diameters by species; empty: those of the map
-  std::string volume = {};        ///< table of form factors by species; empty: 0.47 +- 0.04 for all
-  std::string recall = {};        ///< table of detection rates by height; empty: all trees were detected
+  std::string aoi = {};        ///< polygons, each a stand, in place of `stands`; trees outside do not count
+  double grid = 0;             ///< metres, side of square cells in place of stands; 0: none
+  std::string allometry = {};  ///< table of stem diameters by species; empty: those of the map
+  std::string volume = {};     ///< table of form factors by species; empty: 0.47 +- 0.04 for all
+  std::string recall = {};     ///< table of detection rates by height; empty: all trees were detected
   std::int64_t max_trees =
       trees_in_memory(MemoryOption{});  ///< trees held in memory, 1 kB each; figures do not depend on it
   double class_width = 5;               ///< centimetres, of diameter classes

@@ -50,7 +50,7 @@ void check_written_map(const LocalizeRequest& request, const LocalizeMethod& met
   const char* option = request.update_map ? "--update-map" : "--write-map";
   if (!method.updates_map())
     throw Error(ErrorCode::usage, fmt::format("--method {} does not change maps", method.name()), option,
-                "use --method slam or graph");
+                "use --method slam, graph or beacons");
   if (request.update_map && !request.write_map.empty())
     throw Error(ErrorCode::usage, "--update-map and --write-map exclude each other", "", "give one");
   if (request.update_map && request.map == "none")
@@ -295,7 +295,9 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   LocalizeResult result{.track = method.run(task),
                         .settings = options_as_text(option_table(options)),
                         .settings_json = task.settings_json};
-  if (task.start && request.map != "none" && !method.updates_map() && fits_badly(result.track)) {
+  // SLAM without a start maps the mirrored world as well as the true one.
+  const bool can_be_mirrored = !method.updates_map() || method.start() == StartPolicy::required;
+  if (task.start && request.map != "none" && can_be_mirrored && fits_badly(result.track)) {
     const OpenedMap again =
         open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
     if (const std::string fault = find_mirrored(task, again, method); !fault.empty())

@@ -165,16 +165,21 @@ class DemTiles {
 
 }  // namespace
 
-localization::TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files) {
+std::shared_ptr<const DemSource> open_dem(const RobotMap& map, const std::vector<std::string>& dem_files) {
   std::vector<std::string> files = dem_files;
   if (files.empty()) {
     if (!map.store->has_dem_coverage()) return {};
     files = {"GPKG:" + map.store->path().string() + ":dem"};
   }
-  const auto dem = importers::import_dem({.files = files,
-                                          .nodata = NodataPolicy::unknown,
-                                          .crs = map.crs().kind() == CrsKind::local ? "local" : "",
-                                          .inspect = false});
+  return importers::import_dem({.files = files,
+                                .nodata = NodataPolicy::unknown,
+                                .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                .inspect = false});
+}
+
+localization::TerrainHeight open_terrain(const RobotMap& map, const std::vector<std::string>& dem_files) {
+  const std::shared_ptr<const DemSource> dem = open_dem(map, dem_files);
+  if (!dem) return {};
   const auto tiles = std::make_shared<DemTiles>(dem, map.frame, map.crs());
   return [tiles](const Eigen::Vector2d& place) { return (*tiles)(place); };
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include "geo/dem_source.hpp"
 #include "geodb/map_store.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/terrain_pose.hpp"
@@ -30,6 +31,9 @@ struct OpenedMap {
   RobotMap map;
   localization::LandmarkWindow window;
 };
+
+/// Returns the DEM of files or, without files, the map's own coverage; null if there is none.
+std::shared_ptr<const DemSource> open_dem(const RobotMap& map, const std::vector<std::string>& dem_files);
 
 /// Returns terrain heights under the map from DEM files or, without files, from the map's own coverage; empty
 /// if there is none. Bilinear between cells. Throws Error if the DEM is of another body.

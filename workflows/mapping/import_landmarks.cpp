@@ -66,10 +66,10 @@ importers::ImportedTable read_elements(const ImportRequest& request, StagedLandm
   if (!request.unit.empty()) rules.unit = request.unit;
   const auto first = [](const std::string& a, const std::string& b) { return a.empty() ? b : a; };
   const auto source = importers::open_elements(request.table, first(request.layer, rules.layer));
-  return importers::import_by_rules(*source, request.table, all_types(), rules,
-                                    first(request.options.table_crs, rules.crs),
-                                    first(request.options.map_crs, rules.map_crs),
-                                    [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); });
+  return importers::import_by_rules(
+      *source, request.table, all_types(), rules, first(request.options.table_crs, rules.crs),
+      first(request.options.map_crs, rules.map_crs),
+      [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); }, request.options.aoi);
 }
 
 /// Reads Landmark_Groundtruth.dat: numbered posts in a local CRS.
@@ -101,6 +101,7 @@ geodb::RunRecord run_record(const importers::ImportedTable& table, const std::st
 
 void send_counts(const importers::ImportedTable& table, bool by_rules, const Callbacks& callbacks) {
   callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, by_rules ? "\n" : ", ")));
+  if (!table.unused.empty()) callbacks.summary(fmt::format("not used: {}\n", fmt::join(table.unused, ", ")));
   for (const std::string& warning : table.warnings) callbacks.warning(warning);
   callbacks.summary(fmt::format("{} rows, {} landmarks, {} rejected\n", table.rows, table.landmarks,
                                 table.rows - table.landmarks));
@@ -133,6 +134,9 @@ importers::ImportedTable import_landmarks(const ImportRequest& request, const Ca
   StagedLandmarks landmarks(all_types(), folder.empty() ? "." : folder);
   importers::ImportedTable table;
   if (request.format == "mrclam") {
+    if (!request.options.aoi.empty())
+      throw Error(ErrorCode::usage, "--aoi does not apply to the few posts of an MRCLAM dataset", "--aoi",
+                  "`waymark export MAP PART.gpkg --aoi AREA` takes a part of the map");
     if (std::filesystem::is_directory(file))
       file = (std::filesystem::path(file) / "Landmark_Groundtruth.dat").string();
     const std::string coded = all_types()[find_self_identifying_type(all_types()).value()].name;

@@ -24,11 +24,16 @@ namespace waymark::workflows {
 namespace {
 
 /// Puts the poses of a file in the place of those of the log.
-void read_poses(const DriveMapRequest& request, localization::RobotLog& log) {
+void read_poses(DriveMapRequest& request, localization::RobotLog& log) {
   if (!request.poses.empty()) {
     log.truth.clear();
-    for (const localization::TrackRow& row : exporters::read_track_csv(request.poses).rows)
-      log.truth.push_back({row.t, row.at.pose});
+    const exporters::TrackFile read = exporters::read_track_file(request.poses);
+    if (request.crs.empty()) request.crs = read.crs;
+    if (!read.crs.empty() &&
+        (request.crs == "local" || !Crs::from_text(request.crs).same_as(Crs::from_text(read.crs))))
+      throw Error(ErrorCode::usage, fmt::format("the poses are in {}, not in {}", read.crs, request.crs),
+                  request.poses, "leave --crs out, and convert the map: waymark export MAP OUT --crs ...");
+    for (const localization::TrackRow& row : read.track.rows) log.truth.push_back({row.t, row.at.pose});
   }
   if (log.truth.empty())
     throw Error(ErrorCode::usage, "the poses of the drive are unknown", request.log,
@@ -57,7 +62,8 @@ LocalFrame frame_of_poses(const Crs& crs, const localization::RobotLog& log) {
 
 }  // namespace
 
-DriveMapResult map_drive(const DriveMapRequest& request, const Callbacks& callbacks) {
+DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callbacks) {
+  DriveMapRequest request = given;
   if (!(request.max_range > 0 && std::isfinite(request.max_range)))
     throw Error(ErrorCode::usage, "the range must be above 0 m", "--max-range", "e.g. --max-range 40");
   check_map_output(request.map);

@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/locked_folder.hpp"
 #include "core/options/option_reader.hpp"
+#include "core/output_error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 #include "workflows/mapping/join_maps.hpp"
@@ -20,9 +22,13 @@
 #include "workflows/mapping/merged_types.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
+#include "workflows/query/area_of_map.hpp"
+#include "workflows/query/map_of_area.hpp"
 
 namespace waymark::workflows {
 namespace {
+
+namespace fs = std::filesystem;
 
 void check_request(const MergeRequest& request) {
   check_map_output(request.result);
@@ -121,10 +127,34 @@ geodb::RunRecord merge_record(const std::vector<InputFile>& inputs, const Loaded
   return run;
 }
 
+/// Merges the whole maps aside and writes the part inside the area.
+MergeResult merge_inside(const MergeRequest& request, const Callbacks& callbacks) try {
+  area_of_map(request.aoi, request.maps.front());  // before any work
+  const fs::path parent = fs::path(request.result).parent_path();
+  const LockedFolder folder(parent.empty() ? fs::path(".") : parent);
+  MergeRequest whole = request;
+  whole.aoi.clear();
+  whole.result = (folder.path() / fs::path(request.result).filename()).string();
+  MergeResult result = merge_maps(whole, {callbacks.progress, [&](const Message& message) {
+                                            if (message.kind != MessageKind::summary)
+                                              callbacks.send(message.kind, message.text);
+                                          }});
+  std::vector<std::string> warnings;
+  const std::int64_t all =
+      std::exchange(result.landmarks, write_part_of_map(whole.result, request.aoi, request.result, warnings));
+  for (const std::string& warning : warnings) callbacks.warning(warning);
+  callbacks.summary(fmt::format("{}: {} of {} landmarks of {} maps lie in the area of interest\n",
+                                request.result, result.landmarks, all, request.maps.size()));
+  return result;
+} catch (const fs::filesystem_error& e) {
+  fail_output(request.result, e.code().message());
+}
+
 }  // namespace
 
 MergeResult merge_maps(const MergeRequest& request, const Callbacks& callbacks) {
   check_request(request);
+  if (!request.aoi.empty()) return merge_inside(request, callbacks);
   const std::vector<InputFile> inputs = sorted_inputs(request.maps);
   // Of two maps in the order of time: whether the sorted inputs are in that of the request.
   const bool in_order = inputs.front().path == request.maps.front();

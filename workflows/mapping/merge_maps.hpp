@@ -9,6 +9,7 @@ namespace waymark::workflows {
 struct MergeRequest {
   std::vector<std::string> maps;  ///< two or more, of one CRS
   std::string result;             ///< .gpkg, none of the maps
+  std::string aoi = {};           ///< polygons: landmarks outside are left out of the result; empty: none are
   bool changes = false;           ///< find what changed from the first to the second map, two only
   double max_move = 5;            ///< m; what moved farther is gone and new
 };
@@ -29,6 +30,9 @@ struct MergeResult {
 /// - Elevation tiles are left out, with a warning.
 /// - Of landmarks that identify themselves and disagree in position that of the later map counts, with a
 ///   warning: of the second map if changes are requested, else of the map with the latest run.
+/// - The maps are merged whole before the area of interest is cut out, so that its border changes no
+/// landmark.
+///   Counts but `landmarks` are of the whole maps.
 /// - Requested changes are the layer `change` of the result. The order of the maps matters to them.
 /// - Throws Error{usage} for fewer than two maps, maps of different CRSs, or a result that is one of them.
 /// - Throws Error{usage} for changes of more than two maps, or a `max_move` outside [0, 1e6].

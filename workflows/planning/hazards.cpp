@@ -239,7 +239,7 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   exporters::CogStream file(request.output, bands, grid);
   write_tiles(
       grid, {request.tile_cells, request.threads, "hazards"},
-      [&](const Window& window) {
+      [&](const Window& window, const auto&) {
         std::vector<Grid<float>> tile = compute_with_extras(hazards, *dem, window, extras);
         if (!request.aoi.empty()) close_outside(tile[planning::kHazardBands - 1], window, *dem);
         return tile;

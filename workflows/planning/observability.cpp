@@ -28,6 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxRasterCells = 1e9;
+constexpr double kDefaultCell = 2;     // m
+constexpr double kDefaultCells = 1e6;  // a wider default cell makes no more
 
 void check(const ObservabilityRequest& request) {
   const auto refuse = [](std::string problem, std::string hint) {
@@ -35,7 +37,7 @@ void check(const ObservabilityRequest& request) {
   };
   if (fs::path(request.output).extension() != ".tif")
     refuse(fmt::format("the raster '{}' does not end in .tif", request.output), "it is a GeoTIFF");
-  check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
+  if (request.cell != 0) check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.drive > 0 && request.drive <= 1e5))
     refuse(fmt::format("--drive {:g} is outside (0, 100000] m", request.drive), "");
   check_number("--sensor-height", request.sensor_height, "m", {.help = "", .min = 0, .max = 1000});
@@ -43,11 +45,19 @@ void check(const ObservabilityRequest& request) {
                {.help = "", .min = 16, .max = 8192});
 }
 
+/// Returns a cell of 1, 2 or 5 times a power of ten with which the area has about a million cells at most.
+double default_cell(double square_metres) {
+  double cell = kDefaultCell;
+  for (int i = 0; square_metres > kDefaultCells * cell * cell; ++i)
+    cell *= i % 3 == 0 ? 2.5 : 2;  // 5, 10, 20
+  return cell;
+}
+
 /// Cells of the map's CRS about all landmarks and the range around them, or those of the area's box, aligned
 /// to multiples of a cell.
 GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& landmarks, double range,
-                     const std::optional<importers::Area>& area, const ObservabilityRequest& request) {
-  const double metres = map.crs().metres_per_unit(), cell = request.cell / metres;
+                     const std::optional<importers::Area>& area, ObservabilityRequest& request) {
+  const double metres = map.crs().metres_per_unit();
   Eigen::AlignedBox2d box;
   for (const localization::MapLandmark& landmark : landmarks.landmarks())
     box.extend(map.frame.crs_from_map_frame({{landmark.at.x(), landmark.at.y(), 0}}).xyz.head<2>().eval());
@@ -56,6 +66,8 @@ GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& land
   if (box.isEmpty())
     throw Error(ErrorCode::input, "no landmark can be seen from the area of interest", request.aoi,
                 "draw it nearer to the landmarks of the map");
+  if (request.cell == 0) request.cell = default_cell(box.volume() * metres * metres);
+  const double cell = request.cell / metres;
   const double west = std::floor(box.min().x() / cell), east = std::ceil(box.max().x() / cell),
                south = std::floor(box.min().y() / cell), north = std::ceil(box.max().y() / cell);
   const double columns = east - west, rows = north - south;
@@ -72,22 +84,35 @@ GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& land
   return grid;
 }
 
+/// Returns the box of the cells and of the landmarks in the map frame.
+Eigen::AlignedBox2d sight_area(const GridGeometry& grid, const RobotMap& map,
+                               const localization::LandmarkGrid& landmarks) {
+  Eigen::AlignedBox2d box = landmarks.bounds();
+  const double right = static_cast<double>(grid.columns - 1), bottom = static_cast<double>(grid.rows - 1);
+  for (const auto& [c, r] :
+       {std::pair(0.0, 0.0), std::pair(right, 0.0), std::pair(0.0, bottom), std::pair(right, bottom)})
+    box.extend(plan_position(map.frame, grid.where.x(c), grid.where.y(r)));
+  return box;
+}
+
 std::vector<Grid<float>> compute_tile(const Window& window, const GridGeometry& grid, const RobotMap& map,
-                                      const localization::LandmarkGrid& landmarks,
+                                      const planning::ObservabilityField& field,
                                       const std::optional<importers::Area>& area,
-                                      const planning::ObservabilityRules& rules) {
+                                      const std::function<void(double)>& done) {
   constexpr std::size_t bands = std::size(planning::kObservabilityBands);
   std::vector<Grid<float>> out(
       bands, Grid<float>(window.columns, window.rows, std::numeric_limits<float>::quiet_NaN()));
-  for (std::int64_t r = 0; r < window.rows; ++r)
+  for (std::int64_t r = 0; r < window.rows; ++r) {
+    done(static_cast<double>(r) / static_cast<double>(window.rows));
     for (std::int64_t c = 0; c < window.columns; ++c) {
       const double x = grid.where.x(static_cast<double>(window.column + c)),
                    y = grid.where.y(static_cast<double>(window.row + r));
       if (area && !area->contains(x, y)) continue;
       const Eigen::Vector2d at = plan_position(map.frame, x, y);
-      const auto values = observability_bands(planning::observability_at(at.x(), at.y(), landmarks, rules));
+      const auto values = observability_bands(field.at(at.x(), at.y()));
       for (std::size_t b = 0; b < bands; ++b) out[b](c, r) = static_cast<float>(values[b]);
     }
+  }
   return out;
 }
 
@@ -120,7 +145,8 @@ class SdCounts {
 
 }  // namespace
 
-ObservabilityResult make_observability(const ObservabilityRequest& request, const Callbacks& callbacks) {
+ObservabilityResult make_observability(const ObservabilityRequest& given, const Callbacks& callbacks) {
+  ObservabilityRequest request = given;
   check(request);
   const std::shared_ptr<const SensorProfile> sensor = find_sensor(request.sensor, request.map);
   planning::ObservabilityRules rules;
@@ -135,16 +161,20 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
   std::optional<importers::Area> area;
   if (!request.aoi.empty()) area = importers::read_area_of_interest(request.aoi, map.crs());
   const GridGeometry grid = grid_of(map, landmarks, rules.sensing.coverage.range, area, request);
-  rules.sensing.visible = planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
+  rules.sensing.visible = planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height},
+                                                 sight_area(grid, map, landmarks), callbacks);
   const bool hides = static_cast<bool>(rules.sensing.visible);
   std::vector<exporters::CogStream::Band> bands;
   for (const auto& [name, unit] : planning::kObservabilityBands)
     bands.push_back({std::string(name), std::string(unit)});
   exporters::CogStream file(request.output, bands, grid);
+  const planning::ObservabilityField field(landmarks, rules);
   SdCounts counts;
   write_tiles(
       grid, {request.tile_cells, request.threads, "observability"},
-      [&](const Window& window) { return compute_tile(window, grid, map, landmarks, area, rules); },
+      [&](const Window& window, const std::function<void(double)>& done) {
+        return compute_tile(window, grid, map, field, area, done);
+      },
       [&](const std::vector<Grid<float>>& tile) { counts.add(tile); }, file, callbacks);
   file.commit({{"WAYMARK_VERSION", program_version()},
                {"SENSOR", sensor->name},
@@ -159,7 +189,7 @@ ObservabilityResult make_observability(const ObservabilityRequest& request, cons
                                        {0.3, "#ffffbf", "0.3 m"},
                                        {1, "#fdae61", "1 m"},
                                        {3, "#d7191c", "3 m and more"}}}));
-  const ObservabilityResult result{grid.columns, grid.rows, counts.seen(), counts.median()};
+  const ObservabilityResult result{grid.columns, grid.rows, request.cell, counts.seen(), counts.median()};
   callbacks.summary(fmt::format(
       "{}: {} x {} cells of {:g} m for {}\n  {:.1f} % with a landmark in sight; there the sd of the position "
       "is {:.2g} m in the median after {:g} m{}\n",

@@ -12,7 +12,7 @@ struct ObservabilityRequest {
   std::string output;                 ///< .tif; a style .qml is written beside it
   std::string sensor;                 ///< name or file (.json) of a sensor profile
   double range = 0, view = 0;         ///< metres, degrees; 0: those of the sensor
-  double cell = 2;                    ///< metres
+  double cell = 0;                    ///< metres; 0: 2 m, or as wide as makes a million cells
   double drive = 100;                 ///< metres driven at each place
   std::vector<std::string> dem = {};  ///< terrain that hides landmarks; empty: stored in the map, or none
   double sensor_height = 1;           ///< metres above the terrain
@@ -23,6 +23,7 @@ struct ObservabilityRequest {
 
 struct ObservabilityResult {
   std::int64_t columns = 0, rows = 0;
+  double cell = 0;       ///< metres
   double seen = 0;       ///< fraction of the cells with a landmark in sight
   double median_sd = 0;  ///< of these cells, metres, to 5 %
 };

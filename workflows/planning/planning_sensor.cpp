@@ -2,12 +2,11 @@
 #include "workflows/planning/planning_sensor.hpp"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <memory>
-#include <utility>
 
 #include "core/error.hpp"
+#include "workflows/planning/sight_terrain.hpp"
 
 namespace waymark::workflows {
 
@@ -23,17 +22,15 @@ SensorCoverage planning_coverage(const SensorProfile& sensor, const std::string&
 }
 
 localization::LineOfSight planning_line_of_sight(const RobotMap& map, const std::vector<std::string>& dem,
-                                                 const localization::LineOfSightOptions& options) {
-  const auto open = [&map, dem, options] {
-    return localization::terrain_line_of_sight(open_terrain(map, dem), options);
-  };
-  localization::LineOfSight here = open();
-  if (!here) return {};
-  const auto of_thread = std::make_shared<tbb::enumerable_thread_specific<localization::LineOfSight>>(open);
-  of_thread->local() = std::move(here);
-  return [of_thread](const localization::Pose2& sensor, const Eigen::Vector2d& landmark) {
-    return of_thread->local()(sensor, landmark);
-  };
+                                                 const localization::LineOfSightOptions& options,
+                                                 const Eigen::AlignedBox2d& area,
+                                                 const Callbacks& callbacks) {
+  const std::shared_ptr<const DemSource> source = open_dem(map, dem);
+  if (!source) return {};
+  const Body& body = map.crs().body();
+  return localization::terrain_line_of_sight(
+      sight_terrain(*source, map.frame, area, {.progress = callbacks.progress}), options,
+      body.name.empty() ? 0 : body.mean_radius(), body.name == "Earth" ? 0.13 : 0);
 }
 
 }  // namespace waymark::workflows

@@ -21,8 +21,7 @@ std::vector<Window> tiles_of(const GridGeometry& grid, std::int64_t size) {
 
 }  // namespace
 
-void write_tiles(const GridGeometry& grid, const RasterTiles& how,
-                 const std::function<std::vector<Grid<float>>(const Window&)>& compute,
+void write_tiles(const GridGeometry& grid, const RasterTiles& how, const ComputeTile& compute,
                  const std::function<void(const std::vector<Grid<float>>&)>& use, exporters::CogStream& file,
                  const Callbacks& callbacks) {
   const std::vector<Window> tiles = tiles_of(grid, how.tile_cells);
@@ -33,8 +32,9 @@ void write_tiles(const GridGeometry& grid, const RasterTiles& how,
     std::vector<std::vector<Grid<float>>> made(std::min(batch, tiles.size() - first));
     arena.execute([&] {
       tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t i) {
-        made[i] = compute(tiles[first + i]);
-        meter.add(1);
+        pipeline::UnitProgress progress(meter);
+        made[i] = compute(tiles[first + i], [&progress](double done) { progress.advance_to(done); });
+        progress.advance_to(1);
       });
     });
     for (std::size_t i = 0; i < made.size(); ++i) {

@@ -152,6 +152,13 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
   return route;
 }
 
+/// Returns the box of the cells and of what is seen from them.
+Eigen::AlignedBox2d sight_area(const planning::RouteCells& cells, double range) {
+  const Eigen::Vector2d first(cells.x0, cells.y0), margin(range, range);
+  const Eigen::Vector2d last(cells.x(cells.count() - 1), cells.y(cells.count() - 1));
+  return {first - margin, last + margin};
+}
+
 planning::InformationField compute_field(const planning::RouteCells& cells, const LegPlanner& planner,
                                          const Callbacks& callbacks) {
   pipeline::ProgressMeter meter(callbacks.progress, "information", 1);
@@ -191,8 +198,8 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     stops.push_back(
         cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
   planner.sensing.identities_known = request.identities_known;
-  planner.sensing.visible =
-      planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height});
+  planner.sensing.visible = planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height},
+                                                   sight_area(cells, coverage.range), callbacks);
   problem.field = compute_field(cells, planner, callbacks);
   double sd = 0.1, yaw_sd = 2 * kRadiansPerDegree;
   planner.odometry = read_odometry(request, map, sd, yaw_sd);

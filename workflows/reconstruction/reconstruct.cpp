@@ -13,6 +13,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/output_error.hpp"
+#include "importers/tables/area_of_interest.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/reconstruction/surface/orthophoto.hpp"
 #include "pipeline/reconstruction/surface/sweep_heights.hpp"
@@ -67,6 +68,9 @@ void check_request(const ReconstructRequest& request) {
                 "", "leave out one or the other");
   if (request.control.empty() && !request.marks.empty())
     throw Error(ErrorCode::usage, "--marks is given, but no control points", "", "pass --control FILE");
+  if (!request.aoi.empty() && request.until == ReconstructUntil::poses)
+    throw Error(ErrorCode::usage, "--aoi limits DEM and orthophoto, but --until poses makes none", "",
+                "leave out one or the other");
   if (!(request.cell >= 0 && std::isfinite(request.cell)))
     throw Error(ErrorCode::usage, fmt::format("--cell {} is not a size in metres", request.cell), "",
                 "pass a number above 0, or leave it out");
@@ -117,6 +121,28 @@ void check_memory(double cells, double cell) {
                   cell * std::sqrt(cells / fitting)));
 }
 
+/// Leaves the cells of the box around the area.
+void crop_to_area(const std::string& aoi, const Crs& crs, pipeline::SurfaceGrid& grid) {
+  const double metres = crs.kind() == CrsKind::local ? 1 : crs.metres_per_unit();
+  const Eigen::AlignedBox2d box = importers::read_area_of_interest(aoi, crs).box();
+  const auto cells = [](double at, std::int64_t count) {
+    return static_cast<std::int64_t>(std::clamp(at, 0.0, static_cast<double>(count)));
+  };
+  const std::int64_t left = cells(std::floor((box.min().x() * metres - grid.west) / grid.cell), grid.columns),
+                     right = cells(std::ceil((box.max().x() * metres - grid.west) / grid.cell), grid.columns),
+                     top = cells(std::floor((grid.north - box.max().y() * metres) / grid.cell), grid.rows),
+                     bottom = cells(std::ceil((grid.north - box.min().y() * metres) / grid.cell), grid.rows);
+  if (right - left < 2 || bottom - top < 2)
+    throw Error(ErrorCode::input, "the area of interest does not meet the terrain that two images see", aoi,
+                fmt::format("they see x {:.1f} to {:.1f}, y {:.1f} to {:.1f} in {}", grid.west / metres,
+                            (grid.west + static_cast<double>(grid.columns) * grid.cell) / metres,
+                            (grid.north - static_cast<double>(grid.rows) * grid.cell) / metres,
+                            grid.north / metres, crs.id()));
+  grid.west += static_cast<double>(left) * grid.cell;
+  grid.north -= static_cast<double>(top) * grid.cell;
+  grid.columns = right - left, grid.rows = bottom - top;
+}
+
 pipeline::SweepPlan plan_sweep(const ReconstructRequest& request, const PosedImages& posed,
                                const std::vector<pipeline::SurfaceView>& views) {
   constexpr double kMaxCells = 4e8;
@@ -150,12 +176,13 @@ pipeline::SweepPlan plan_sweep(const ReconstructRequest& request, const PosedIma
   }
   const double gsd = pipeline::usual_gsd(views, (plan.range.low + plan.range.high) / 2);
   const double cell = request.cell > 0 ? request.cell : 2 * gsd;
-  const auto grid = cell > 0 ? pipeline::overlap_grid(views, plan.range, cell) : std::nullopt;
+  auto grid = cell > 0 ? pipeline::overlap_grid(views, plan.range, cell) : std::nullopt;
   if (!grid)
     throw Error(ErrorCode::input,
                 fmt::format("no two images see the same terrain between {:.1f} and {:.1f} m", plan.range.low,
                             plan.range.high),
                 request.cameras, "check the poses: cameras must look down at heights below them");
+  if (!request.aoi.empty()) crop_to_area(request.aoi, posed.crs, *grid);
   const double cells = static_cast<double>(grid->columns) * static_cast<double>(grid->rows);
   if (cells > kMaxCells)
     throw Error(ErrorCode::usage, fmt::format("--cell {:g} makes {:.0f} million cells", cell, cells / 1e6),

@@ -22,6 +22,7 @@ struct ReconstructRequest : PosePhotosRequest, CameraTie {
   std::string cameras = {};  ///< camera file with the poses, which names the images if none are given; empty:
                              ///< they are solved; `control` then ties them to the map
   double cell = 0;           ///< of the DEM, metres; 0: twice the median ground sample distance
+  std::string aoi = {};      ///< polygons: DEM and orthophoto cover the box around them; empty: all
   ReconstructUntil until = ReconstructUntil::ortho;
   std::string map = {};           ///< GeoPackage of landmarks; empty: none
   std::string command_line = {};  ///< recorded in the map

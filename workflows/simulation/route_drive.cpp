@@ -139,17 +139,20 @@ RouteDrive drive_route(const testbed::DriveWorld& world, const testbed::Scene& s
     hazards = std::make_shared<HazardClasses>(resolved(folder, model.hazards), map);
   std::vector<std::string> dem;
   if (!model.dem.empty()) dem.push_back(resolved(folder, model.dem));
-  Navigator navigator(
-      model, vehicle, settings.speed, settings.laser_height, live,
-      DrivePlanner(localization::LandmarkGrid(all_landmarks(map, sensor.get())),
-                   {.coverage = coverage,
-                    .cell = model.cell,
-                    .limit_sigma = model.limit_sigma,
-                    .clearance = vehicle.track_width() / 2 + model.margin,
-                    .noise = odometry.white(),
-                    .visible = planning_line_of_sight(map, dem, {.sensor_height = settings.laser_height})},
-                   hazards),
-      stations, report);
+  const localization::LandmarkGrid landmarks(all_landmarks(map, sensor.get()));
+  Eigen::AlignedBox2d sight_area = landmarks.bounds();
+  sight_area.min().array() -= coverage.range, sight_area.max().array() += coverage.range;
+  Navigator navigator(model, vehicle, settings.speed, settings.laser_height, live,
+                      DrivePlanner(landmarks,
+                                   {.coverage = coverage,
+                                    .cell = model.cell,
+                                    .limit_sigma = model.limit_sigma,
+                                    .clearance = vehicle.track_width() / 2 + model.margin,
+                                    .noise = odometry.white(),
+                                    .visible = planning_line_of_sight(
+                                        map, dem, {.sensor_height = settings.laser_height}, sight_area)},
+                                   hazards),
+                      stations, report);
   const auto motion = testbed::make_motion(scene.terrain, scene.solids, settings, start, world.seed);
   testbed::DriveSensors sensors(world, place);
   std::vector<testbed::DriveStep> steps;

@@ -78,11 +78,11 @@ class SceneFolder {
   LockedFolder folder_;
 };
 
-exporters::NamedTrack read_named_track(const std::string& text) {
+exporters::NamedTrack read_named_track(const std::string& text, const LocalFrame& frame) {
   const std::size_t equals = text.find('=');
   const bool named = equals != std::string::npos && equals > 0 && !fs::exists(text);
   const fs::path file = named ? text.substr(equals + 1) : text;
-  return {named ? text.substr(0, equals) : file.stem().string(), exporters::read_track_csv(file)};
+  return {named ? text.substr(0, equals) : file.stem().string(), exporters::read_track(file, &frame)};
 }
 
 /// Returns the posed images of a camera file, with files from a folder.
@@ -125,7 +125,7 @@ ViewPageResult write_view(const ViewPageRequest& asked, const Callbacks& callbac
                               .dems = request.dem,
                               .orthophoto = request.orthophoto,
                               .max_landmarks = request.max_landmarks};
-  for (const std::string& track : request.tracks) view.tracks.push_back(read_named_track(track));
+  for (const std::string& track : request.tracks) view.tracks.push_back(read_named_track(track, map.frame));
   localization::RobotLog log;
   if (!request.log.empty()) {
     log = read_view_log(request, map, callbacks);

@@ -27,6 +27,7 @@
 #include "geodb/map_store.hpp"
 #include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/engine/sha256.hpp"
+#include "workflows/query/map_of_area.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -198,9 +199,21 @@ std::string size_text(const fs::path& file) {
   return fmt::format("{:.1f} MB", double(fs::file_size(file)) / 1e6);
 }
 
+WebMapResult make_web_map_of_area(const WebMapRequest& request, const Callbacks& callbacks) {
+  const fs::path folder = (fs::path(request.output) / "").lexically_normal().parent_path();
+  const MapOfArea part(request.map, request.aoi, folder);
+  for (const std::string& warning : part.warnings()) callbacks.warning(warning);
+  WebMapRequest of_part = request;
+  of_part.aoi.clear();
+  of_part.map = part.path();
+  if (of_part.dem.empty()) of_part.dem = dem_of_map(request.map);
+  return make_web_map(of_part, callbacks);
+}
+
 }  // namespace
 
 WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbacks) {
+  if (!request.aoi.empty()) return make_web_map_of_area(request, callbacks);
   check_request(request);
   const auto library =
       request.assets.empty() ? std::map<std::string, std::string>() : read_library(request.assets);

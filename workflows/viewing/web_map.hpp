@@ -9,6 +9,7 @@ namespace waymark::workflows {
 /// Request of a folder that shows a map in web browsers.
 struct WebMapRequest {
   std::string map;
+  std::string aoi = {};                 ///< polygons: landmarks outside are left out; empty: none are
   std::string output;                   ///< folder; an older web map in it is replaced
   std::vector<std::string> types = {};  ///< landmark types shown; empty: all
   double min_confidence = 0;            ///< landmarks of less are left out

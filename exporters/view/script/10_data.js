@@ -11,10 +11,13 @@ const scene = JSON.parse(document.getElementById('scene').textContent);
 
 // Fields of `numbers` per landmark and of a track per pose, as view_page.cpp writes them.
 const LANDMARK = {x: 0, y: 1, z: 2, radius: 3, height: 4, confidence: 5, quality: 6, sd: 7, size: 10};
+// Fields of `forms` per landmark of an oriented shape.
+const FORM = {turn: 0, length: 1, width: 2, opening: 3, side: 4, size: 5};
 const POSE = {t: 0, x: 1, y: 2, yaw: 3, varX: 4, varY: 5, covXY: 6, lost: 7, size: 8};
 
 for (const layer of scene.layers) {
   layer.numbers = floatsOf(layer.numbers);
+  layer.forms = floatsOf(layer.forms);
   layer.values = floatsOf(layer.values);
   layer.counts = new Int32Array(bytesOf(layer.counts));
   layer.evidence = floatsOf(layer.evidence);

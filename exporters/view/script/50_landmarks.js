@@ -7,6 +7,7 @@ in vec3 part;             // factors of the colour
 in vec3 at;
 in vec2 size;             // radius, height, metres
 in vec2 trust;            // confidence, quality (< 0: not assessed)
+in float number;          // of the landmark in its layer
 uniform vec4 pixel;       // width of a pixel at distance 1, smallest radius in pixels, ground, bowl
 uniform vec2 least;       // smallest confidence and quality drawn
 uniform vec2 heading;     // cosine and sine of a turn
@@ -15,7 +16,7 @@ flat out int instance;
 flat out float sure;
 out vec3 shade;
 void main() {
-  instance = gl_InstanceID;
+  instance = int(number + 0.5);
   sure = trust.x;
   if (trust.x < least.x || (least.y > 0.0 && trust.y < least.y)) { gl_Position = vec4(2.0, 2.0, 2.0, 1.0); return; }
   float z = pixel.z > 0.5 ? ground(at.xy) : at.z;
@@ -28,7 +29,7 @@ void main() {
   gl_Position = seen * vec4(p, raised(foot) + top, 1.0);
   vec3 n = normalize(vec3(heading.x * side.x - heading.y * side.y, heading.y * side.x + heading.x * side.y, side.z));
   float light = 0.62 + 0.38 * dot(n, normalize(vec3(-0.55, 0.55, 0.65)));
-  shade = part * light * (gl_InstanceID == chosen ? 1.25 : 1.0);
+  shade = part * light * (instance == chosen ? 1.25 : 1.0);
 }`, `
 flat in int instance;
 flat in float sure;
@@ -96,7 +97,7 @@ const SOLIDS = {
   })(), pixels: 9},
 };
 
-// Returns vertices of a solid with instances of 7 floats: position, radius, height, confidence, quality.
+// Returns vertices of a solid with instances of 8 floats: position, radius, height, confidence, quality, number.
 function makeInstances(solid, instances) {
   const vertices = gl.createVertexArray();
   gl.bindVertexArray(vertices);
@@ -105,17 +106,20 @@ function makeInstances(solid, instances) {
   useFloats(a.side, shape, 3, 9, 3);
   useFloats(a.part, shape, 3, 9, 6);
   const buffer = makeBuffer(instances, gl.ARRAY_BUFFER, gl.DYNAMIC_DRAW);
-  useFloats(a.at, buffer, 3, 7, 0, 1);
-  useFloats(a.size, buffer, 2, 7, 3, 1);
-  useFloats(a.trust, buffer, 2, 7, 5, 1);
+  useFloats(a.at, buffer, 3, 8, 0, 1);
+  useFloats(a.size, buffer, 2, 8, 3, 1);
+  useFloats(a.trust, buffer, 2, 8, 5, 1);
+  useFloats(a.number, buffer, 1, 8, 7, 1);
   gl.bindVertexArray(null);
-  return {solid, vertices, buffer, count: instances.length / 7, corners: SOLIDS[solid].data.length / 9};
+  return {vertices, buffer, count: instances.length / 8, corners: SOLIDS[solid].data.length / 9, instanced: true,
+          pixels: SOLIDS[solid].pixels, draped: solid === 'bowl'};
 }
 
 // Returns radius and height at which a landmark is drawn; 0: by the smallest size in pixels.
 function drawnSize(layer, i) {
   const n = layer.numbers, at = i * LANDMARK.size;
   const radius = n[at + LANDMARK.radius], height = n[at + LANDMARK.height];
+  if (layer.shape in FORMS) return [reachOf(formOf(layer, i)), layer.shape === 'strip' ? 0.06 : height || NOMINAL[layer.shape]];
   switch (layer.shape) {
     case 'bowl': return [radius, 0.05 * radius];
     case 'sphere': return [radius, 2 * radius];
@@ -126,15 +130,22 @@ function drawnSize(layer, i) {
   }
 }
 
+// Returns the 7 floats of a landmark that all its corners share: foot, radius, height, confidence, quality.
+function sharedNumbers(layer, i, radius, height) {
+  const n = layer.numbers.subarray(i * LANDMARK.size, (i + 1) * LANDMARK.size), quality = n[LANDMARK.quality];
+  // The foot is computed once here: a texture access per corner costs more than all else.
+  return [n[0], n[1], terrain.known ? groundAt(n[0], n[1]) : n[2], radius, height, n[LANDMARK.confidence],
+          Number.isNaN(quality) ? -1 : quality];
+}
+
 for (const layer of scene.layers) {
-  const instances = new Float32Array(7 * layer.count);
-  for (let i = 0; i < layer.count; ++i) {
-    const n = layer.numbers.subarray(i * LANDMARK.size, (i + 1) * LANDMARK.size);
-    const quality = n[LANDMARK.quality];
-    // The foot is computed once here: a texture access per corner costs more than all else.
-    instances.set([n[0], n[1], terrain.known ? groundAt(n[0], n[1]) : n[2], ...drawnSize(layer, i), n[LANDMARK.confidence],
-                   Number.isNaN(quality) ? -1 : quality], 7 * i);
+  if (layer.shape in FORMS) {
+    layer.instances = makeForms(layer);
+    continue;
   }
+  const instances = new Float32Array(8 * layer.count);
+  for (let i = 0; i < layer.count; ++i)
+    instances.set([...sharedNumbers(layer, i, ...drawnSize(layer, i)), i], 8 * i);
   layer.instances = makeInstances(layer.shape in SOLIDS ? layer.shape : 'point', instances);
 }
 
@@ -143,15 +154,15 @@ function drawInstances(view, instances, rgb, {number = 0, chosen = -1, heading =
   const u = solidProgram.uniforms;
   // Crowds are drawn smaller, so that they do not hide the terrain.
   const room = 0.11 * Math.sqrt(canvas.clientWidth * canvas.clientHeight / Math.max(instances.count, 1));
-  const pixels = Math.min(SOLIDS[instances.solid].pixels, Math.max(room, 0.7));
-  gl.uniform4f(u.pixel, view.pixel, pixels, onGround ? 1 : 0,
-               instances.solid === 'bowl' ? 1 : 0);
+  const pixels = Math.min(instances.pixels, Math.max(room, 0.7));
+  gl.uniform4f(u.pixel, view.pixel, pixels, onGround ? 1 : 0, instances.draped ? 1 : 0);
   gl.uniform2f(u.heading, Math.cos(heading), Math.sin(heading));
   gl.uniform3f(u.colour, ...rgb);
   gl.uniform1i(u.chosen, chosen);
   gl.uniform1i(u.layer, number);
   gl.bindVertexArray(instances.vertices);
-  gl.drawArraysInstanced(gl.TRIANGLES, 0, instances.corners, instances.count);
+  if (instances.instanced) gl.drawArraysInstanced(gl.TRIANGLES, 0, instances.corners, instances.count);
+  else gl.drawArrays(gl.TRIANGLES, 0, instances.corners);
 }
 
 function drawLandmarks(view, picking = false) {
@@ -161,7 +172,7 @@ function drawLandmarks(view, picking = false) {
     if (!layer.shown || layer.count === 0) return;
     const chosen = selected && selected.layer === layer ? selected.index : -1;
     drawInstances(view, layer.instances, layer.rgb,
-                  {number: picking ? k + 1 : 0, chosen, onGround: terrain.known && layer.shape === 'bowl'});
+                  {number: picking ? k + 1 : 0, chosen, onGround: terrain.known && layer.instances.draped});
   });
 }
 

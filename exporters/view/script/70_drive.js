@@ -6,7 +6,7 @@ let estimates = 0;
 for (const track of scene.tracks) {
   track.rgb = track.truth ? null : TRACK_COLOURS[estimates++ % TRACK_COLOURS.length];  // truth: the ink
   track.lines = new Lines();
-  track.marker = makeInstances('robot', new Float32Array(7));
+  track.marker = makeInstances('robot', new Float32Array(8));
 }
 const trackColour = track => track.rgb || view.ink;
 
@@ -121,7 +121,7 @@ function drawDrive(view) {
     if (!track.shown || track.count === 0) continue;
     const pose = poseAt(track, now);
     gl.bindBuffer(gl.ARRAY_BUFFER, track.marker.buffer);
-    gl.bufferSubData(gl.ARRAY_BUFFER, 0, new Float32Array([pose.x, pose.y, 0, 0.9, 0.45, 1, 1]));
+    gl.bufferSubData(gl.ARRAY_BUFFER, 0, new Float32Array([pose.x, pose.y, 0, 0.9, 0.45, 1, 1, 0]));
     drawInstances(view, track.marker, trackColour(track), {heading: pose.yaw});
   }
 }

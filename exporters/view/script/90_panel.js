@@ -208,4 +208,4 @@ if (clock) {
   player.append(playButton, slider, timeText, speed, ...(scene.tracks.length ? [followBox] : []), statusText);
 }
 
-document.body.append(labels, head, legend, details, element('div', {className: 'corner'}, north, scaleBar), player);
+document.body.append(labels, element('div', {className: 'side'}, head, legend), details, element('div', {className: 'corner'}, north, scaleBar), player);

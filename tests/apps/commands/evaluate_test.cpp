@@ -2,6 +2,9 @@
 // What `waymark evaluate` says where nothing matches.
 #include <gmock/gmock.h>
 
+#include <nlohmann/json.hpp>
+#include <utility>
+
 #include "tests/apps/program.hpp"
 
 namespace waymark::test {
@@ -84,6 +87,72 @@ TEST_F(Evaluate, TrueCoordinatesThatAreNoMetresNeedTheMap) {
     const Outcome said = waymark({"evaluate", "track", track, "--truth", log, "--max-gap", "2"});
     EXPECT_NE(said.code, 0) << crs;
     EXPECT_THAT(said.err, AllOf(HasSubstr("are in " + crs + ", which is not in metres"), HasSubstr("--map")));
+  }
+}
+
+// A drive of 20 m along the grid's north, 3 km from the origin of zone 33: a track with --crs was compared
+// with the frame of the map as it stood.
+TEST_F(Evaluate, TracksInACrsAreConvertedOrRefused) {
+  const std::string map = folder_ / "m.gpkg";
+  ASSERT_EQ(waymark({"import",
+                     file("rocks.csv", "x,y,radius,height\n300000,5200000,0.5,0.6\n300020,5200000,0.5,0.6\n"),
+                     "-o", map, "--type", "rock", "--map-crs", "EPSG:32633"})
+                .code,
+            0);
+  std::string log =
+      R"({"kind":"header","version":1,"frame":"crs","crs":"EPSG:32633","start":{"x":300000,"y":5200000,"yaw":1.5707963}})"
+      "\n";
+  for (int i = 0; i <= 20; ++i)
+    log += R"({"kind":"step","t":)" + std::to_string(i) + R"(,"dx":)" + (i ? "1" : "0") +
+           R"(,"dy":0,"dyaw":0})"
+           "\n" +
+           R"({"kind":"truth","t":)" + std::to_string(i) + R"(,"x":300000,"y":)" +
+           std::to_string(5200000 + i) +
+           R"(,"yaw":1.5707963})"
+           "\n";
+  const std::string drive = file("drive.jsonl", log);
+  const auto localize = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"localize", map, drive, "--method", "odometry", "-o", folder_ / name};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome said = waymark(words);
+    EXPECT_EQ(said.code, 0) << said.err;
+    return folder_ / name;
+  };
+  const std::string in_frame = localize("frame.csv", {}), in_crs = localize("crs.csv", {"--crs"});
+  EXPECT_THAT(text_of(in_crs), HasSubstr(",EPSG:32633\n"));
+  const auto evaluate = [&](const std::string& track, const std::string& truth,
+                            const std::vector<std::string>& more) {
+    std::vector<std::string> words{"evaluate",  "track", track,      "--truth", truth,
+                                   "--max-gap", "2",     "--format", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    return waymark(words);
+  };
+  const Outcome a = evaluate(in_frame, drive, {"--map", map}), b = evaluate(in_crs, drive, {"--map", map});
+  ASSERT_EQ(b.code, 0) << b.err;
+  const auto error = [](const Outcome& said) {
+    return nlohmann::json::parse(said.out)["ate_rmse"].get<double>();
+  };
+  EXPECT_LT(error(a), 0.1);
+  EXPECT_NEAR(error(a), error(b), 2e-3);
+  const Outcome alike = evaluate(in_crs, drive, {});  // both in the CRS
+  ASSERT_EQ(alike.code, 0) << alike.err;
+  EXPECT_LT(error(alike), 0.1);
+  EXPECT_NEAR(error(evaluate(in_frame, in_crs, {"--map", map})), 0, 1e-3) << "a truth of the same kind";
+  for (const auto& [track, truth] :
+       {std::pair(in_frame, drive), std::pair(in_crs, in_frame), std::pair(in_frame, in_crs)}) {
+    const Outcome said = evaluate(track, truth, {});
+    EXPECT_EQ(said.code, 2) << track << ' ' << truth;
+    EXPECT_THAT(said.err,
+                AllOf(HasSubstr("EPSG:32633"), HasSubstr("the frame of a map"), HasSubstr("--map")));
+  }
+}
+
+TEST_F(Evaluate, ANegativeGapIsRefused) {
+  const std::string track = file("t.csv", "t,x,y,yaw\n0,0,0,0\n1,1,0,0\n");
+  for (const char* gap : {"-1", "nan"}) {
+    const Outcome said = waymark({"evaluate", "track", track, "--truth", track, "--max-gap", gap});
+    EXPECT_EQ(said.code, 2) << gap;
+    EXPECT_THAT(said.err, HasSubstr("--max-gap"));
   }
 }
 

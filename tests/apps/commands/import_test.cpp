@@ -44,6 +44,18 @@ TEST_F(Import, CatalogueOfTheMoonByTheNamesOfItsColumns) {
   EXPECT_EQ(waymark({"validate", map_}).code, 0);
 }
 
+TEST_F(Import, ColumnsThatAreNotUsedAreNamed) {
+  const std::string text = "x,y,radius,height,quarry,\"Photo no\"\n1,2,0.5,0.6,north,7\n";
+  const Outcome said = import(text, {"--type", "rock", "--map-crs", "local"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("not used: quarry, Photo no\n"));
+  const Outcome made = import(
+      text, {"--type", "rock", "--map-crs", "local", "--columns", "uid=quarry,height=", "--format", "json"});
+  EXPECT_EQ(json::parse(made.out)["unused_columns"], json({"height", "Photo no"}));
+  EXPECT_THAT(import("x,y,radius,height\n1,2,0.5,0.6\n", {"--type", "rock", "--map-crs", "local"}).err,
+              testing::Not(HasSubstr("not used")));
+}
+
 TEST_F(Import, ARecursiveViewIsRefused) {
   ASSERT_EQ(import("x,y,radius\n1,1,3\n", {"--type", "rock", "--map-crs", "local"}).code, 0);
   sqlite3* database = nullptr;

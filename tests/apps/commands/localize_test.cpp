@@ -4,11 +4,14 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 #include <sstream>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "tests/apps/localize_fixture.hpp"
@@ -419,6 +422,58 @@ TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
     EXPECT_GT(all.matched, 1.2 * std::max(stems.matched, poles.matched)) << method;
     EXPECT_LT(all.rejected, 0.1 * all.matched) << method << ": each object is one sighting";
   }
+}
+
+// A circle about four beacons of which the map has two; ranges are exact to a centimetre.
+TEST_F(Localize, BeaconsThatADriveHasPlacedAreWrittenToAMap) {
+  const std::map<std::string, std::pair<double, double>> beacons{
+      {"north", {2, 24}}, {"east", {26, -3}}, {"south", {-4, -22}}, {"west", {-23, 5}}};
+  const std::string map = folder_ / "two.gpkg";
+  write_text(folder_ / "two.csv", "uid,x,y\nnorth,2,24\neast,26,-3\n");
+  ASSERT_EQ(waymark({"import", folder_ / "two.csv", "-o", map, "--type", "beacon", "--map-crs", "local",
+                     "--columns", "position_sd=0.02"})
+                .code,
+            0);
+  std::string log = R"({"kind":"header","version":1,"frame":"map","range_sd":0.05})"
+                    "\n";
+  int i = 0;
+  for (int k = 0; k < 600; ++k) {
+    const double t = k / 5.0, a = t / 15, x = 15 * std::sin(a), y = -15 * std::cos(a);
+    log += R"({"kind":"odometry","t":)" + std::to_string(t) +
+           R"(,"v":1,"omega":0.0666667})"
+           "\n";
+    const auto& [uid, at] = *std::next(beacons.begin(), i++ % 4);
+    log += R"({"kind":"sightings","t":)" + std::to_string(t) + R"(,"items":[{"range":)" +
+           std::to_string(std::hypot(at.first - x, at.second - y)) + R"(,"landmark":")" + uid + "\"}]}\n";
+  }
+  write_text(folder_ / "log.jsonl", log);
+  const auto run = [&](const std::string& from, const std::vector<std::string>& more) {
+    std::vector<std::string> words{
+        "localize", from,    folder_ / "log.jsonl", "-o", track_, "--method", "beacons", "--start",
+        "0,-15,0",  "--set", "start_sd=0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return waymark(words);
+  };
+  const auto check = [&](const std::string& file) {
+    EXPECT_EQ(waymark({"validate", file}).code, 0);
+    const nlohmann::json found = nlohmann::json::parse(waymark({"query", file, "--format", "json"}).out);
+    EXPECT_EQ(found.size(), 4u);
+    for (const nlohmann::json& one : found) {
+      const auto& [x, y] = beacons.at(one["uid"].get<std::string>());
+      EXPECT_NEAR(one["x"], x, 0.3) << one["uid"];
+      EXPECT_NEAR(one["y"], y, 0.3) << one["uid"];
+      EXPECT_GT(one["confidence"].get<double>(), 0.9);
+      EXPECT_LT(one["var_x"].get<double>(), 0.1);
+    }
+  };
+  const std::string before = text_of(map);
+  const Outcome said = run(map, {"--write-map", folder_ / "four.gpkg"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("2 landmarks changed, 2 added"));
+  check(folder_ / "four.gpkg");
+  EXPECT_EQ(text_of(map), before);
+  ASSERT_EQ(run(map, {"--update-map"}).code, 0);
+  check(map);
 }
 
 /// In a south polar map of the Moon the map frame's east is any direction of the grid.

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "tests/apps/made_dem.hpp"
 #include "tests/apps/program.hpp"
 
 namespace waymark::test {
@@ -104,6 +106,36 @@ TEST_F(ObservabilityCommand, CoversTheAreaOfInterest) {
     "properties": {}, "geometry": {"type": "Polygon", "coordinates": [[[400, -10], [600, -10], [600, 10], [400, -10]]]}}]})");
   EXPECT_THAT(run({"--aoi", folder_ / "far.geojson"}).err,
               HasSubstr("no landmark can be seen from the area of interest"));
+}
+
+// Mountain tops of hills 12 km across: cells of 2 m, and lines of sight sampled each half metre, took hours.
+TEST(ObservabilityOfMountainTops, EndsWithAMillionCellsAtMost) {
+  TempFolder folder;
+  MadeDem dem{.columns = 400, .rows = 400};
+  dem.crs = "EPSG:32632";
+  dem.geotransform = {600000, 30, 0, 5200000, 0, -30};
+  dem.height = [](int column, int row) {
+    return 800 + 300 * std::sin(0.06 * column) * std::cos(0.05 * row) +
+           40 * std::sin(0.31 * column + 0.2 * row);
+  };
+  make_dem(folder / "dem.tif", dem);
+  ASSERT_EQ(waymark({"peaks", folder / "dem.tif", "-o", folder / "m.gpkg", "--with-dem"}).code, 0);
+  const auto run = [&](const std::string& out, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"observability", folder / "m.gpkg", "-o",       folder / out,
+                                   "--sensor",      "bearing_camera",  "--format", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome made = waymark(words);
+    EXPECT_EQ(made.code, 0) << made.err;
+    return nlohmann::json::parse(made.out);
+  };
+  const auto near = run("near.tif", {});  // 100 m: few cells see a landmark
+  EXPECT_LE(near["columns"].get<double>() * near["rows"].get<double>(), 1e6);
+  EXPECT_EQ(near["cell_m"], 20);
+  EXPECT_GT(near["seen"], 0);
+  const auto far = run("far.tif", {"--range", "12000", "--cell", "200"});
+  EXPECT_GT(far["seen"], 0.5);
+  const auto open = run("open.tif", {"--range", "12000", "--cell", "200", "--sensor-height", "1000"});
+  EXPECT_GT(open["seen"], far["seen"]) << "terrain hides fewer landmarks from above";
 }
 
 TEST_F(ObservabilityCommand, SaysWhatCannotWork) {

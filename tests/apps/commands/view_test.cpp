@@ -160,6 +160,69 @@ TEST_F(ViewCommand, FiltersHideLandmarks) {
   EXPECT_TRUE(values[4].is_null());
 }
 
+/// One landmark of each type of a street, in metres; directions in radians clockwise from north.
+constexpr const char* kStreet =
+    "type,uid,x,y,direction,facing,orientation,opening_angle,side,length,width,height,diameter\n"
+    "wall,w,0,0,1.5707963,,,,,10,,4,\n"        // faces east, so it runs north
+    "wall_corner,c,10,0,0,,,1.5707963,,,,,\n"  // into the open: north
+    "wall_end,e,20,0,0,,,,1,,,,\n"
+    "traffic_sign,s,30,0,,3.1415926,,,,,,2.5,\n"
+    "door,d,0,20,,,0.7853982,,,,0.9,,\n"  // along north-east
+    "building,b,20,20,,,0,,,,,9,14\n"
+    "lane_mark,l,40,20,,,1.5707963,,,6,0.2,,\n"
+    "pole,p,50,0,,,,,,,,6,0.2\n"
+    "wall,u,50,20,,,,,,8,,3,\n";  // its direction is unknown
+
+TEST_F(ViewCommand, WallsDoorsSignsAndBuildingsHaveTheirShapes) {
+  const std::string map = folder_ / "street.gpkg";
+  write_text(folder_ / "street.csv", kStreet);
+  ASSERT_EQ(waymark({"import", folder_ / "street.csv", "-o", map, "--map-crs", "local"}).code, 0);
+  ASSERT_EQ(waymark({"view", map, "-o", page_, "--title",
+                     "A street with a title that is so long that it needs several lines of the heading"})
+                .code,
+            0);
+  // Returns west, south, low, east, north, high of a landmark's boxes about its position, in centimetres.
+  const std::string box =
+      "(uid => { const one = findLandmark(uid), lo = [1e9, 1e9, 1e9], hi = [-1e9, -1e9, -1e9];"
+      " for (const b of formOf(one.layer, one.index)) visitBox(b, p => p.forEach((v, k) => {"
+      " lo[k] = Math.min(lo[k], v); hi[k] = Math.max(hi[k], v); })); return [...lo, ...hi].map(v => "
+      "Math.round(100 * v)); })";
+  std::vector<std::string> steps;
+  const std::vector<std::string> uids{"w", "c", "e", "s", "d", "b", "l"};
+  for (const std::string& uid : uids) steps.push_back("eval:" + box + "(\"" + uid + "\")");
+  for (const std::string& uid : {"w", "c", "e", "s", "d", "b", "l", "p", "u"}) {
+    // Each is looked at from near, as a user would choose it.
+    steps.push_back("eval:(() => { const one = findLandmark(\"" + uid +
+                    "\"), n = one.layer.numbers, at = one.index * LANDMARK.size; eye.x = n[at];"
+                    " eye.y = n[at + 1]; eye.distance = 25; eye.azimuth = 0.6; redraw(); return 1; })()");
+    steps.push_back("clickon:waymark.pixelOf(\"" + uid + "\")");
+    steps.push_back("eval:waymark.selected()");
+  }
+  steps.push_back(
+      "eval:(() => { const h = document.querySelector(\"header\").getBoundingClientRect(), l = "
+      "document.querySelector(\".legend\").getBoundingClientRect();"
+      " return [h.bottom <= l.top, h.height > 60, l.bottom <= innerHeight]; })()");
+  steps.push_back("errors");
+  const auto values = browse(steps);
+  if (values.empty()) GTEST_SKIP() << "Chromium is not installed (chromium)";
+  EXPECT_EQ(values[0], Json::parse("[-12,-500,-30,0,500,400]"));
+  // Wings of 60 cm at 45 degrees to the north-east and north-west, 12 cm thick, as high as no type says.
+  EXPECT_EQ(values[1], Json::parse("[-51,-8,-30,51,42,250]"));
+  EXPECT_EQ(values[2], Json::parse("[0,-12,-30,60,0,250]"))
+      << "who looks south at the face has the left in the east";
+  EXPECT_EQ(values[3], Json::parse("[-30,-8,-20,30,4,280]"));
+  EXPECT_EQ(values[4][3].get<int>() - values[4][0].get<int>(),
+            values[4][4].get<int>() - values[4][1].get<int>())
+      << "diagonal";
+  EXPECT_NEAR(values[4][3].get<int>(), 46, 4);  // 0.53 m to the jambs' ends, and 0.12 m of thickness
+  EXPECT_EQ(values[5], Json::parse("[-620,-620,-50,620,620,900]")) << "a square as large as the circle";
+  EXPECT_EQ(values[6], Json::parse("[-300,-10,0,300,10,3]"));
+  const std::vector<std::string> clicked{"w", "c", "e", "s", "d", "b", "l", "p", "u"};
+  for (std::size_t i = 0; i < clicked.size(); ++i) EXPECT_EQ(values[uids.size() + 3 * i + 2], clicked[i]);
+  EXPECT_EQ(values[values.size() - 2], Json::parse("[true,true,true]")) << "heading above legend";
+  EXPECT_THAT(values.back(), IsEmpty());
+}
+
 TEST_F(ViewCommand, TheReportsTableAndMapAnswerEachOther) {
   ASSERT_EQ(waymark({"report", map_, "-o", page_}).code, 0);
   const auto values = browse(

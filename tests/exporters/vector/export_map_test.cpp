@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "exporters/report/report_html.hpp"
 #include "exporters/vector/count_rows.hpp"
 #include "exporters/vector/vector_format.hpp"
 #include "geodb/map_store.hpp"
@@ -283,6 +284,26 @@ TEST_F(ExportMap, GeoPackageKeepsShapeLayersOfItsLandmarks) {
 TEST_F(ExportMap, ACountingAreaIsRefusedWhereItDoesNotApply) {
   EXPECT_THAT(error_of([&] { export_map(earth, out("tops.geojson"), {.area_km2 = 3}); }),
               HasSubstr("GeoJSON has no counting area"));
+}
+
+// An older program, or a hand, has written values that no landmark has.
+TEST_F(ExportMap, AMapWithErrorsIsRefusedByTablesAndReports) {
+  sqlite3* database = nullptr;
+  ASSERT_EQ(sqlite3_open(earth.c_str(), &database), SQLITE_OK);
+  ASSERT_EQ(sqlite3_exec(database, "UPDATE mountain_top SET prominence = -5 WHERE uid = 'mt-two'", nullptr,
+                         nullptr, nullptr),
+            SQLITE_OK)
+      << sqlite3_errmsg(database);
+  sqlite3_close(database);
+  for (const char* name : {"tops.csv", "tops.geojson", "tops.gpkg"}) {
+    const std::string said = error_of([&] { export_map(earth, out(name)); });
+    EXPECT_THAT(said, ::testing::AllOf(HasSubstr("the map has errors"), HasSubstr("prominence = -5"),
+                                       HasSubstr("waymark validate")))
+        << name;
+    EXPECT_FALSE(std::filesystem::exists(out(name)));
+  }
+  EXPECT_THAT(error_of([&] { write_report(earth, out("r.html")); }),
+              HasSubstr("what is made of it would be wrong"));
 }
 
 TEST_F(ExportMap, ExistingOutputIsKeptUnlessAllowed) {

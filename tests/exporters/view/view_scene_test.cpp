@@ -2,19 +2,24 @@
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <random>
 #include <tuple>
 
+#include "core/units.hpp"
 #include "exporters/report/relief_picture.hpp"
 #include "exporters/view/make_scene.hpp"
 #include "exporters/view/view_drive.hpp"
+#include "exporters/view/view_form.hpp"
 #include "exporters/view/view_frame.hpp"
 #include "exporters/view/view_page.hpp"
 #include "exporters/view/view_terrain.hpp"
 #include "geodb/write_map.hpp"
+#include "landmarks/landmark_type.hpp"
 #include "pipeline/engine/sha256.hpp"
 #include "tests/exporters/small_dem.hpp"
 #include "tests/exporters/small_map.hpp"
@@ -47,6 +52,46 @@ class ViewSceneOfMap : public ::testing::Test {
 
   TemporaryFolder folder;
 };
+
+TEST(ViewForm, ShapesFollowFromTheDeclarations) {
+  TypeRegistry types;
+  register_landmark_types(types);
+  std::map<std::string, std::string> shapes;
+  for (const LandmarkType& type : types) shapes[type.name] = view_shape(type);
+  const std::map<std::string, std::string> expected{
+      {"beacon", "cylinder"},    {"building", "block"},     {"crater", "bowl"},     {"door", "portal"},
+      {"lane_mark", "strip"},    {"mountain_top", "cone"},  {"pillar", "cylinder"}, {"pole", "cylinder"},
+      {"rock", "sphere"},        {"traffic_sign", "plate"}, {"tree", "canopy"},     {"wall", "wall"},
+      {"wall_corner", "corner"}, {"wall_end", "end"}};
+  for (const auto& [name, shape] : expected) EXPECT_EQ(shapes[name], shape) << name;
+  for (const auto& [name, shape] : shapes)
+    EXPECT_EQ(is_oriented(shape), testing::Matches(testing::AnyOf("wall", "corner", "end", "plate", "block",
+                                                                  "strip", "portal"))(shape));
+  // A type of a plug-in is drawn by its own declaration.
+  const LandmarkType fence{
+      .name = "fence",
+      .summary = "",
+      .features = {{"facing", "rad", Scale::direction, -4, 4, ""}, {"length", "m", Scale::ratio, 0, 99, ""}}};
+  EXPECT_EQ(view_shape(fence), "wall");
+}
+
+TEST(ViewForm, DirectionsAreTurnedFromTheGridToTheView) {
+  TypeRegistry types;
+  register_landmark_types(types);
+  const LandmarkType& type = types[types.id("wall")];
+  const Crs utm = Crs::from_text("EPSG:32632");
+  const ViewFrame frame(utm, LocalFrame(utm, {{700000, 5200000, 0}}), Eigen::Vector3d::Zero());
+  Landmark wall;
+  wall.position = {{700000, 5200000, 0}};
+  wall.features = {{std::numbers::pi / 2, 0, 1}, {12, 0, 1}, {}};  // it faces grid east, 12 m long
+  const ViewForm form = view_form(wall, type, frame);
+  // Grid east lies clockwise of true east where the grid's north lies east of true north.
+  const double convergence =
+      std::atan(std::tan(2.63 * kRadiansPerDegree) * std::sin(46.93 * kRadiansPerDegree));
+  EXPECT_NEAR(form.turn, -convergence, 2e-3);
+  EXPECT_EQ(form.length, 12);
+  EXPECT_TRUE(std::isnan(form.width));
+}
 
 int count_of(const std::string& text, const std::string& part) {
   int count = 0;

@@ -62,6 +62,27 @@ TEST(Town, CornersAreEndsOfWallsAndLookIntoTheOpen) {
   }
 }
 
+TEST(Town, WallsLieOnTheStatedSideOfTheirEnds) {
+  const Town town = plan_hall({}, 4, 4);
+  const auto is_wall = [&](const Eigen::Vector2d& at) {
+    return std::ranges::any_of(town.walls, [&](const TownWall& w) {
+      const Eigen::Vector2d run = w.to - w.from, to = at - w.from;
+      const double t = std::clamp(to.dot(run) / run.squaredNorm(), 0.0, 1.0);
+      return (to - t * run).norm() < 0.01;
+    });
+  };
+  int ends = 0;
+  for (const TownLandmark& l : town.landmarks) {
+    if (l.type != "wall_end") continue;
+    ++ends;
+    // Who looks at the face looks against its normal; left of that is a quarter turn counter-clockwise.
+    const Eigen::Vector2d look(-std::sin(*l.direction), -std::cos(*l.direction)), left(-look.y(), look.x());
+    EXPECT_TRUE(is_wall(l.at + 0.1 * *l.side * left)) << l.at.transpose();
+    EXPECT_FALSE(is_wall(l.at - 0.1 * *l.side * left)) << l.at.transpose();
+  }
+  EXPECT_GT(ends, 20);
+}
+
 TEST(Town, DrivesDifferInCarsAndDoorsOnly) {
   const auto landmarks = [](const Town& town) { return town_table(town); };
   const Town first = plan_street({}, 5, 1), second = plan_street({}, 5, 2);
