@@ -218,14 +218,19 @@ class Reader {
                                  .pitch = line.angle("pitch", 0),
                                  .beam_width = {}};
     if (line.has("beam_width")) scan.beam_width = std::max(0.0, line.angle("beam_width"));
+    if (line.has("intensities")) scan.intensities = line.numbers("intensities", 0);
+    if (!scan.intensities.empty() && scan.intensities.size() != scan.ranges.size())
+      line.fail(fmt::format("has {} intensities for {} ranges", scan.intensities.size(), scan.ranges.size()));
     return scan;
   }
 
   localization::SightingSet points(const LogLine& line) {
     if (!detect_) detect_ = localization::make_point_detector(types_, held_);
     const std::filesystem::path file = line.text("file");
-    return detect_({.robot_from_sensor = line.mount(),
-                    .points = read_point_file(file.is_absolute() ? file : line.file().parent_path() / file)});
+    localization::PointCloud cloud =
+        read_point_file(file.is_absolute() ? file : line.file().parent_path() / file);
+    cloud.robot_from_sensor = line.mount();
+    return detect_(cloud);
   }
 
   static std::int64_t pixels(const LogLine& line, const char* key) {
