@@ -148,6 +148,14 @@ class Reader {
     return set;
   }
 
+  static localization::LineExtent extent(const LogLine& line, const localization::SeenLandmark& s) {
+    const std::vector<float> ends = line.numbers("extent", kMissing);
+    if (ends.size() != 2 || !(ends[0] < ends[1]))
+      line.fail("\"extent\" must be two numbers, the smaller one first");
+    if (!s.range || s.bearing) line.fail("has an \"extent\", which needs \"range\" and excludes \"bearing\"");
+    return {static_cast<double>(ends[0]), static_cast<double>(ends[1])};
+  }
+
   localization::SeenLandmark sighting(const LogLine& line) {
     localization::SeenLandmark s;
     if (!line.has("bearing") && !line.has("range"))
@@ -173,6 +181,7 @@ class Reader {
                               *s.elevation));
     }
     s.elevation_sd = line.positive("elevation_sd", 0.002);
+    if (line.has("extent")) s.extent = extent(line, s);
     if (line.has("landmark")) {
       const std::string uid = line.text("landmark");
       s.identity = localization::landmark_key(uid);

@@ -73,6 +73,20 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
 }
 
+TEST_F(WaymarkLog, ASightingOfALineHasARangeAndAnExtent) {
+  const RobotLog log = read(
+      R"({"kind":"sightings","t":0,"items":[{"type":"wall","range":4,"extent":[-2,3.5],"features":{"direction":1.5}}]})");
+  const SeenLandmark& s = std::get<SightingSet>(log.events.at(0).what).sightings.at(0);
+  EXPECT_EQ(s.extent->from, -2);
+  EXPECT_EQ(s.extent->to, 3.5);
+  const auto refused = [&](const std::string& item) {
+    return message_of([&] { read(R"({"kind":"sightings","t":0,"items":[{)" + item + "}]}"); });
+  };
+  EXPECT_THAT(refused(R"("range":4,"extent":[3,2])"), HasSubstr("the smaller one first"));
+  EXPECT_THAT(refused(R"("range":4,"extent":[3])"), HasSubstr("two numbers"));
+  EXPECT_THAT(refused(R"("range":4,"bearing":1,"extent":[3,4])"), HasSubstr("excludes"));
+}
+
 TEST_F(WaymarkLog, ASightingIsABearingARangeOrBoth) {
   const RobotLog log = read(
       R"({"kind":"sightings","t":0,"items":[{"range":4,"landmark":"N"},{"bearing":1},{"range":4,"bearing":null},{"range":4,"bearing":1}]})"
