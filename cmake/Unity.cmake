@@ -13,7 +13,7 @@ set(alone
   importers/cameras/formats/opk.cpp importers/logs/bag_cloud.cpp importers/logs/bag_messages.cpp importers/logs/binary_number.cpp importers/logs/gyro_yaw.cpp importers/logs/log_line.cpp importers/logs/waymark_log.cpp importers/cameras/world_to_grid.cpp importers/images/find_images.cpp importers/images/sun_position.cpp
   importers/points/canopy_codec.cpp importers/points/inspect_canopy.cpp importers/rasters/mosaic.cpp importers/stages/load_dem.cpp
   importers/rules/import_rules.cpp importers/rules/ogr_elements.cpp importers/rules/bound_rule.cpp importers/rules/cityjson_elements.cpp importers/logs/point_files.cpp importers/logs/robot_readings.cpp importers/tables/stand_outlines.cpp importers/tables/table_ogr.cpp importers/tables/table_number.cpp
-  localization/ceres_version.cpp localization/filters/sighting_score.cpp localization/filters/particle_blocks.cpp
+  localization/ceres_version.cpp localization/detectors/cloud_facades.cpp localization/filters/sighting_score.cpp localization/filters/particle_blocks.cpp
   localization/global/skyline.cpp localization/global/skyline_fit.cpp localization/identification/identification.cpp
   localization/slam/pose_graph_builder.cpp
   pipeline/craters/crater_training.cpp pipeline/craters/dem_rim.cpp pipeline/craters/find_craters_in_dem.cpp

@@ -31,8 +31,8 @@ void IndependentFraction::learn(const SightingSet& seen, std::span<const Match> 
   Grid<JointEvidence> evidence;
   for (std::size_t i = 0; i < matches.size(); ++i) {
     const Match& match = matches[i];
-    if (match.verdict != Verdict::matched || !seen.sightings[i].range || !(match.covariance.trace() > 0) ||
-        !known_.insert(match.key).second)
+    if (match.verdict != Verdict::matched || !seen.sightings[i].range || seen.sightings[i].extent ||
+        !(match.covariance.trace() > 0) || !known_.insert(match.key).second)
       continue;
     const ExpectedSighting expected = expect(before.pose, seen.robot_from_sensor, match.at);
     for (std::size_t n = 0; n < evidence.size(); ++n) {

@@ -17,6 +17,8 @@ struct LaserScan {
   /// Angle, rad, by which an object looks wider than it is: a beam has a width and returns if part of it
   /// hits.
   std::optional<double> beam_width = {};
+  /// Strengths of the returns, one per beam, in the scanner's own unit; empty: not measured.
+  std::vector<float> intensities = {};
 };
 
 }  // namespace waymark::localization

@@ -10,6 +10,8 @@ namespace waymark::localization {
 struct PointCloud {
   Pose2 robot_from_sensor;
   std::vector<Eigen::Vector3f> points;  ///< those that are not finite are ignored
+  /// Strengths of the returns, one per point, in the scanner's own unit; empty: not measured.
+  std::vector<float> intensities = {};
 };
 
 }  // namespace waymark::localization

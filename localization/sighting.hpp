@@ -20,6 +20,12 @@ struct PossibleType {
   KnownFeatures features;
 };
 
+/// The seen piece of a straight line, such as a wall: from and to, m along the line from the foot of the
+/// sensor on it. Positive is to the left of the normal that points to the sensor.
+struct LineExtent {
+  double from = 0, to = 0;
+};
+
 /// A sighting of one landmark: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to
 /// the left. Ranges are metres on the ground to the landmark's centre; cameras measure bearings alone,
 /// radios ranges alone. Features are in the order of the type.
@@ -37,6 +43,9 @@ struct SeenLandmark {
   double confidence = 1;                ///< probability that it is a landmark, (0, 1]
   /// Types between which the sensor cannot decide, without `type`. Their features have no angles.
   std::vector<PossibleType> possible_types = {};
+  /// Of a line, whose range is that of its foot and whose bearing is absent: the feature `direction` of its
+  /// type is measured instead.
+  std::optional<LineExtent> extent = {};
 
   /// Returns whether range and bearing are measured, which give a position relative to the sensor.
   bool has_position() const { return range && bearing; }
@@ -83,6 +92,9 @@ struct SightingSet {
 
 inline bool SeenLandmark::is_valid() const {
   if (!bearing && !range) return false;
+  if (extent && !(range && !bearing && extent->to - extent->from > 0 && std::isfinite(extent->from) &&
+                  std::isfinite(extent->to)))
+    return false;
   if (elevation && !(bearing && std::abs(*elevation) < 1.6 && elevation_sd > 0)) return false;
   return confidence > 0 && confidence <= 1 &&
          (!bearing || (std::isfinite(*bearing) && std::isfinite(bearing_sd) && bearing_sd > 0)) &&

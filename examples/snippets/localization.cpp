@@ -44,6 +44,9 @@ void see_without_a_bearing_or_a_type() {
   localization::SeenLandmark trunk;  // a tree (type 1) or a pole (type 4)
   trunk.possible_types = {{.type = 1, .features = {}}, {.type = 4, .features = {}}};
   for (const TypeId type : types_of(trunk)) std::cout << "may be of type " << type << '\n';
+  localization::SeenLandmark wall;  // 4 m away, seen from 2 m right to 5 m left of its nearest point
+  wall.range = 4, wall.extent = localization::LineExtent{-2, 5};
+  std::cout << (wall.is_valid() ? "line\n" : "unsound\n");
   std::cout << (may_share_type(trunk, beacon) ? "perhaps the same\n" : "not the same\n");
   //! [open_sighting]
 }

@@ -63,8 +63,9 @@ class BagReader {
           (Eigen::AngleAxisd(-mount.yaw, Eigen::Vector3d::UnitZ()) * chosen.body_from_sensor.linear())
               .cast<float>();
       for (Eigen::Vector3f& point : cloud.points) point = upright * point;
-      log_.events.push_back(
-          {cloud.at.t, detect({.robot_from_sensor = mount, .points = std::move(cloud.points)})});
+      log_.events.push_back({cloud.at.t, detect({.robot_from_sensor = mount,
+                                                 .points = std::move(cloud.points),
+                                                 .intensities = std::move(cloud.intensities)})});
     });
   }
 

@@ -61,11 +61,13 @@ struct BagFix {
 BagFix read_fix(const BagMessage& message);
 
 /// Reads the points of sensor_msgs/msg/PointCloud2 in the frame of the scanner: fields x, y, z at any
-/// offsets, of any numeric types, in either byte order, with padding between points and rows. Other fields
-/// and points that are not finite are left out. Memory is bounded by the size of the message.
+/// offsets, of any numeric types, in either byte order, with padding between points and rows; strengths from
+/// the field intensity, else reflectivity. Other fields and points that are not finite are left out. Memory
+/// is bounded by the size of the message.
 struct BagCloud {
   BagStamp at;
   std::vector<Eigen::Vector3f> points;
+  std::vector<float> intensities;  ///< one per point; empty: not measured
 };
 BagCloud read_cloud(const BagMessage& message);
 

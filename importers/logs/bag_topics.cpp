@@ -50,8 +50,9 @@ void add_scan(BagTopics& topics, const BagMessage& message) {
   const double step = in.number<float>();
   in.number<float>(), in.number<float>();  // time between beams and between scans
   const float min_range = in.number<float>(), max_range = in.number<float>();
-  std::vector<float> ranges = in.floats();
-  localization::LaserScan scan = laser_scan(first, step, min_range, max_range, std::move(ranges));
+  std::vector<float> ranges = in.floats(), intensities = in.floats();
+  localization::LaserScan scan =
+      laser_scan(first, step, min_range, max_range, std::move(ranges), std::move(intensities));
   ScanTopic& topic = topics.scans[std::string(message.topic)];
   if (topic.scans.empty()) topic.frame = std::move(at.frame);
   topic.scans.push_back({at.t, std::move(scan)});

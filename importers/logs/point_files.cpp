@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdlib>
 #include <cstring>
+#include <optional>
 #include <sstream>
 
 #include "core/error.hpp"
@@ -23,36 +24,41 @@ constexpr std::size_t kMaxPoints = 1e8;  // a scan has 1e5
   throw Error(ErrorCode::input, problem, file.string(), hint);
 }
 
-void keep(const Eigen::Vector3f& p, const std::filesystem::path& file, std::vector<Eigen::Vector3f>& points) {
+void keep(const Eigen::Vector3f& p, std::optional<float> intensity, const std::filesystem::path& file,
+          localization::PointCloud& cloud) {
   if (!p.allFinite()) return;
   if (!(p.cwiseAbs().maxCoeff() < kFarthestPoint))
     refuse_points(
         file, fmt::format("a point is at {:g}, {:g}, {:g}: no metres from a scanner", p.x(), p.y(), p.z()),
         "points are in the scanner's own frame, x forward, y left, z up; KITTI's .bin has four float32 "
         "a point");
-  points.push_back(p);
+  cloud.points.push_back(p);
+  if (intensity) cloud.intensities.push_back(*intensity);
 }
 
-std::vector<Eigen::Vector3f> read_kitti(const std::string& bytes, const std::filesystem::path& file) {
+localization::PointCloud read_kitti(const std::string& bytes, const std::filesystem::path& file) {
   constexpr std::size_t record = 4 * sizeof(float);
   if (bytes.empty() || bytes.size() % record != 0)
     refuse_points(
         file, fmt::format("{} bytes are no whole number of points", bytes.size()),
         "a KITTI scan has four little-endian float32 a point: x, y, z, intensity; copy the file again");
   static_assert(std::endian::native == std::endian::little);
-  std::vector<Eigen::Vector3f> points;
-  points.reserve(bytes.size() / record);
+  localization::PointCloud cloud;
+  cloud.points.reserve(bytes.size() / record), cloud.intensities.reserve(bytes.size() / record);
+  bool any_intensity = false;
   for (std::size_t at = 0; at < bytes.size(); at += record) {
-    float xyz[3];
-    std::memcpy(xyz, bytes.data() + at, sizeof xyz);
-    keep({xyz[0], xyz[1], xyz[2]}, file, points);
+    float values[4];
+    std::memcpy(values, bytes.data() + at, sizeof values);
+    keep({values[0], values[1], values[2]}, values[3], file, cloud);
+    any_intensity = any_intensity || values[3] != 0;
   }
-  return points;
+  if (!any_intensity) cloud.intensities.clear();  // written by a converter that had none
+  return cloud;
 }
 
 struct PlyProperty {
   NumberType type;
-  int axis = -1;  // 0 x, 1 y, 2 z
+  int axis = -1;  // 0 x, 1 y, 2 z, 3 intensity
 };
 
 struct PlyHeader {
@@ -60,6 +66,27 @@ struct PlyHeader {
   std::size_t vertices = 0, body = 0;
   std::vector<PlyProperty> properties;  // of a vertex
 };
+
+/// A vertex of a PLY file, read property by property.
+class PlyVertex {
+ public:
+  void set(const PlyProperty& property, float value) {
+    if (property.axis >= 0 && property.axis < 3) at_(property.axis) = value;
+    if (property.axis == 3) intensity_ = value;
+  }
+  void keep_in(localization::PointCloud& cloud, const std::filesystem::path& file) const {
+    keep(at_, intensity_, file, cloud);
+  }
+
+ private:
+  Eigen::Vector3f at_ = Eigen::Vector3f::Zero();
+  std::optional<float> intensity_;
+};
+
+bool is_intensity(const std::string& name) {
+  return name == "intensity" || name == "reflectance" || name == "reflectivity" ||
+         name == "scalar_Intensity" || name == "scalar_intensity";
+}
 
 PlyProperty ply_property(const std::string& type, const std::string& name,
                          const std::filesystem::path& file) {
@@ -78,7 +105,7 @@ PlyProperty ply_property(const std::string& type, const std::string& name,
   else
     refuse_points(file, fmt::format("vertices have a property '{}' of the type '{}'", name, type),
                   "lists and unknown types of vertices are not read; write plain numbers");
-  property.axis = name == "x" ? 0 : name == "y" ? 1 : name == "z" ? 2 : -1;
+  property.axis = name == "x" ? 0 : name == "y" ? 1 : name == "z" ? 2 : is_intensity(name) ? 3 : -1;
   return property;
 }
 
@@ -120,16 +147,16 @@ PlyHeader read_ply_header(const std::string& bytes, const std::filesystem::path&
   header.body = at;
   int axes = 0;
   for (const PlyProperty& property : header.properties) axes |= property.axis >= 0 ? 1 << property.axis : 0;
-  if (axes != 7 || !seen_format) refuse_points(file, "vertices lack x, y or z", "this is no scan");
+  if ((axes & 7) != 7 || !seen_format) refuse_points(file, "vertices lack x, y or z", "this is no scan");
   return header;
 }
 
-std::vector<Eigen::Vector3f> read_ply(const std::string& bytes, const std::filesystem::path& file) {
+localization::PointCloud read_ply(const std::string& bytes, const std::filesystem::path& file) {
   const PlyHeader header = read_ply_header(bytes, file);
   if (header.vertices > kMaxPoints)
     refuse_points(file, fmt::format("{} vertices are too many for one scan", header.vertices),
                   "a scan is one turn of the scanner");
-  std::vector<Eigen::Vector3f> points;
+  localization::PointCloud cloud;
   std::size_t record = 0;
   for (const PlyProperty& property : header.properties) record += property.type.size;
   const auto cut = [&](std::size_t i) {
@@ -139,30 +166,29 @@ std::vector<Eigen::Vector3f> read_ply(const std::string& bytes, const std::files
   if (header.encoding == PlyHeader::Encoding::ascii) {
     std::istringstream body(bytes.substr(header.body));
     for (std::size_t i = 0; i < header.vertices; ++i) {
-      Eigen::Vector3f p = Eigen::Vector3f::Zero();
+      PlyVertex vertex;
       for (const PlyProperty& property : header.properties) {
         std::string word;
         if (!(body >> word)) cut(i);
-        if (property.axis >= 0) p(property.axis) = std::strtof(word.c_str(), nullptr);
+        vertex.set(property, std::strtof(word.c_str(), nullptr));
       }
-      keep(p, file, points);
+      vertex.keep_in(cloud, file);
     }
-    return points;
+    return cloud;
   }
   if ((bytes.size() - header.body) / record < header.vertices) cut((bytes.size() - header.body) / record);
   const bool swap = header.encoding == PlyHeader::Encoding::big;
-  points.reserve(header.vertices);
+  cloud.points.reserve(header.vertices);
   for (std::size_t i = 0; i < header.vertices; ++i) {
     const char* from = bytes.data() + header.body + i * record;
-    Eigen::Vector3f p = Eigen::Vector3f::Zero();
+    PlyVertex vertex;
     for (const PlyProperty& property : header.properties) {
-      if (property.axis >= 0)
-        p(property.axis) = static_cast<float>(read_binary_number(from, property.type, swap));
+      vertex.set(property, static_cast<float>(read_binary_number(from, property.type, swap)));
       from += property.type.size;
     }
-    keep(p, file, points);
+    vertex.keep_in(cloud, file);
   }
-  return points;
+  return cloud;
 }
 
 }  // namespace
@@ -171,7 +197,7 @@ bool is_point_file(const std::filesystem::path& file) {
   return file.extension() == ".bin" || file.extension() == ".ply";
 }
 
-std::vector<Eigen::Vector3f> read_point_file(const std::filesystem::path& file) {
+localization::PointCloud read_point_file(const std::filesystem::path& file) {
   const std::string bytes = read_vsi_text(file.string());
   if (bytes.starts_with("ply\n") || bytes.starts_with("ply\r")) return read_ply(bytes, file);
   if (file.extension() == ".bin") return read_kitti(bytes, file);

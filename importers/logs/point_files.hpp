@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-#include <Eigen/Core>
 #include <filesystem>
-#include <vector>
+#include "localization/point_cloud.hpp"
 namespace waymark::importers {
 
 /// Reads the points of a 3-D scan, /vsi paths included: KITTI (.bin: little-endian float32 x, y, z,
-/// intensity) or PLY (.ply: ascii, binary of either byte order; vertices x, y, z). Points that are not finite
-/// are left out. Throws Error{input} for another format, a file that breaks off, and one whose coordinates
-/// are no metres of a scanner (beyond 10 km).
-std::vector<Eigen::Vector3f> read_point_file(const std::filesystem::path& file);
+/// intensity) or PLY (.ply: ascii, binary of either byte order; vertices x, y, z and, if it stands there,
+/// intensity, reflectance or reflectivity). Points that are not finite are left out. Throws Error{input} for
+/// another format, a file that breaks off, and one whose coordinates are no metres of a scanner (beyond 10
+/// km).
+localization::PointCloud read_point_file(const std::filesystem::path& file);
 
 /// Returns whether the name is that of a point file.
 bool is_point_file(const std::filesystem::path& file);

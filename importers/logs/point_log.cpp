@@ -62,7 +62,7 @@ localization::RobotLog import_point_log(const fs::path& folder, const TypeRegist
   const std::vector<double> times = times_of(folder, files.size(), log.remarks);
   const localization::PointDetector detect = localization::make_point_detector(types, held);
   for (std::size_t i = 0; i < files.size(); ++i)
-    log.events.push_back({times[i], detect({.robot_from_sensor = {}, .points = read_point_file(files[i])})});
+    log.events.push_back({times[i], detect(read_point_file(files[i]))});
   localization::clean_log(log);
   return log;
 }

@@ -14,18 +14,20 @@ localization::Pose2 level_pose(const Eigen::Isometry3d& pose) {
 }
 
 localization::LaserScan laser_scan(double first_angle, double angle_step, float min_range, float max_range,
-                                   std::vector<float> ranges) {
+                                   std::vector<float> ranges, std::vector<float> intensities) {
   if (!(std::isfinite(first_angle) && std::abs(angle_step) > 0 && std::isfinite(angle_step) &&
         max_range > 0) ||
       ranges.empty())
     throw std::runtime_error("a scan has no beams, or its angles or ranges are not finite");
+  if (intensities.size() != ranges.size()) intensities.clear();
   for (float& r : ranges)
     if (!(r >= min_range)) r = 0;
   return {.robot_from_sensor = {},
           .first_angle = first_angle,
           .angle_step = angle_step,
           .ranges = std::move(ranges),
-          .max_range = max_range};
+          .max_range = max_range,
+          .intensities = std::move(intensities)};
 }
 
 bool is_level(const Eigen::Isometry3d& robot_from_sensor) {
@@ -39,6 +41,7 @@ void mount(localization::LaserScan& scan, const Eigen::Isometry3d& robot_from_se
   // Seen from above, the beams of a scanner that hangs upside down run from right to left in the other order.
   scan.first_angle = -(scan.first_angle + scan.angle_step * static_cast<double>(scan.ranges.size() - 1));
   std::ranges::reverse(scan.ranges);
+  std::ranges::reverse(scan.intensities);
 }
 
 double horizontal_sd(const Covariance3& covariance, int type) {

@@ -16,9 +16,10 @@ using Covariance3 = std::array<double, 9>;
 localization::Pose2 level_pose(const Eigen::Isometry3d& pose);
 
 /// Returns a scan of a sensor in the middle of the robot; ranges below `min_range` are no return. Throws
-/// std::runtime_error if it has no beams, or if angles or ranges cannot be.
+/// std::runtime_error if it has no beams, or if angles or ranges cannot be. Intensities that are not one per
+/// beam are left out.
 localization::LaserScan laser_scan(double first_angle, double angle_step, float min_range, float max_range,
-                                   std::vector<float> ranges);
+                                   std::vector<float> ranges, std::vector<float> intensities = {});
 
 /// Returns whether the scans of a sensor are level, within 0.2 rad. It may hang upside down.
 bool is_level(const Eigen::Isometry3d& robot_from_sensor);

@@ -148,6 +148,14 @@ class Reader {
     return set;
   }
 
+  static localization::LineExtent extent(const LogLine& line, const localization::SeenLandmark& s) {
+    const std::vector<float> ends = line.numbers("extent", kMissing);
+    if (ends.size() != 2 || !(ends[0] < ends[1]))
+      line.fail("\"extent\" must be two numbers, the smaller one first");
+    if (!s.range || s.bearing) line.fail("has an \"extent\", which needs \"range\" and excludes \"bearing\"");
+    return {static_cast<double>(ends[0]), static_cast<double>(ends[1])};
+  }
+
   localization::SeenLandmark sighting(const LogLine& line) {
     localization::SeenLandmark s;
     if (!line.has("bearing") && !line.has("range"))
@@ -173,6 +181,7 @@ class Reader {
                               *s.elevation));
     }
     s.elevation_sd = line.positive("elevation_sd", 0.002);
+    if (line.has("extent")) s.extent = extent(line, s);
     if (line.has("landmark")) {
       const std::string uid = line.text("landmark");
       s.identity = localization::landmark_key(uid);
@@ -218,14 +227,19 @@ class Reader {
                                  .pitch = line.angle("pitch", 0),
                                  .beam_width = {}};
     if (line.has("beam_width")) scan.beam_width = std::max(0.0, line.angle("beam_width"));
+    if (line.has("intensities")) scan.intensities = line.numbers("intensities", 0);
+    if (!scan.intensities.empty() && scan.intensities.size() != scan.ranges.size())
+      line.fail(fmt::format("has {} intensities for {} ranges", scan.intensities.size(), scan.ranges.size()));
     return scan;
   }
 
   localization::SightingSet points(const LogLine& line) {
     if (!detect_) detect_ = localization::make_point_detector(types_, held_);
     const std::filesystem::path file = line.text("file");
-    return detect_({.robot_from_sensor = line.mount(),
-                    .points = read_point_file(file.is_absolute() ? file : line.file().parent_path() / file)});
+    localization::PointCloud cloud =
+        read_point_file(file.is_absolute() ? file : line.file().parent_path() / file);
+    cloud.robot_from_sensor = line.mount();
+    return detect_(cloud);
   }
 
   static std::int64_t pixels(const LogLine& line, const char* key) {

@@ -61,6 +61,13 @@ LaserDetector stems_of_no_type() {
   return laser_detectors().find("stems")->make({});
 }
 
+/// Returns whether the map holds types of no other detector than that of reflectors, which needs intensities.
+bool only_reflectors(const MapTypes& of_map) {
+  return std::ranges::all_of(laser_detectors(), [&](const DetectorSpec& detector) {
+    return detector.name == "reflectors" || !makes_type_of(detector, of_map);
+  });
+}
+
 std::vector<const DetectorSpec*> named_detectors(std::string_view list) {
   std::vector<const DetectorSpec*> chosen;
   for (std::size_t from = 0; from <= list.size();) {
@@ -135,9 +142,11 @@ LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetection
     for (const DetectorSpec* detector : named_detectors(options.find))
       detectors.push_back(detector->make(types));
   if (detectors.empty()) detectors.push_back(stems_of_no_type());
-  return [detect = detect_held(std::move(detectors), wanted),
+  const LaserDetector without_intensities = by_map && only_reflectors(wanted) ? stems_of_no_type() : nullptr;
+  return [detect = detect_held(std::move(detectors), wanted), without_intensities,
           with_features = options.features](const LaserScan& scan) {
-    SightingSet all = detect(scan);
+    SightingSet all =
+        without_intensities && scan.intensities.empty() ? without_intensities(scan) : detect(scan);
     if (!with_features)
       for (SeenLandmark& s : all.sightings) {
         s.features = {};

@@ -123,7 +123,7 @@ PoseEstimate ekf_update(const PoseEstimate& estimate, const SeenLandmark& measur
   std::optional<SeenLandmark> corrected;
   if (!measured.bearing) corrected = correct_curvature(measured, estimate, robot_from_sensor, landmark.at);
   const SeenLandmark& seen = corrected ? *corrected : measured;
-  const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, landmark.at);
+  const ExpectedSighting e = expect(estimate.pose, robot_from_sensor, measured, landmark);
   Eigen::Matrix<double, 2, 3> h = e.by_pose;
   Eigen::Matrix2d r =
       (sensor_noise(seen) + e.by_landmark * landmark.covariance * e.by_landmark.transpose()) / trust;

@@ -21,21 +21,23 @@ struct LinearSighting {
   Eigen::Matrix2d residual = Eigen::Matrix2d::Zero();
 };
 
-LinearSighting by_derivatives(const PoseEstimate& at, const Pose2& mount, const Eigen::Vector2d& landmark) {
-  const ExpectedSighting e = expect(at.pose, mount, landmark);
+LinearSighting by_derivatives(const PoseEstimate& at, const Pose2& mount, const SeenLandmark& of,
+                              const MapLandmark& landmark) {
+  const ExpectedSighting e = expect(at.pose, mount, of, landmark);
   return {e.value, e.by_pose, e.by_landmark};
 }
 
 // Statistical linear regression over the symmetric points of three dimensions.
-LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const Eigen::Vector2d& landmark) {
+LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const SeenLandmark& of,
+                             const MapLandmark& landmark) {
   constexpr int kPoints = 6;
-  LinearSighting line = by_derivatives(at, mount, landmark);
+  LinearSighting line = by_derivatives(at, mount, of, landmark);
   const Eigen::Matrix3d root = square_root(at.covariance);
   if (!(root.diagonal().minCoeff() > 0)) return line;
   Eigen::Matrix<double, 2, kPoints> seen;
   for (int i = 0; i < kPoints; ++i) {
     const double reach = std::sqrt(3.0) * (i % 2 ? -1 : 1);
-    seen.col(i) = expect(pose_of(at.pose.vector() + reach * root.col(i / 2)), mount, landmark).value;
+    seen.col(i) = expect(pose_of(at.pose.vector() + reach * root.col(i / 2)), mount, of, landmark).value;
     seen(1, i) = wrap_angle(seen(1, i) - line.value[1]);  // about the bearing in the middle
   }
   const Eigen::Vector2d mean = seen.rowwise().mean();
@@ -46,6 +48,14 @@ LinearSighting by_regression(const PoseEstimate& at, const Pose2& mount, const E
   line.by_pose = by_root * root.inverse();
   line.residual = seen * seen.transpose() / kPoints - by_root * by_root.transpose();
   return line;
+}
+
+/// Returns the covariance of a landmark's position; of a sighted line with what its direction adds.
+Eigen::Matrix2d error_of(const SeenLandmark& seen, const MapLandmark& landmark,
+                         const Eigen::Vector2d& sensor) {
+  if (!seen.extent || !landmark.is_line()) return landmark.covariance;
+  return landmark.covariance +
+         swing_variance(landmark, sensor) * landmark.normal * landmark.normal.transpose();
 }
 
 /// Returns the covariance of pose and landmark, scaled down to what their own covariances allow: what was
@@ -93,15 +103,15 @@ MapErrors::Linear MapErrors::linear_sighting(const PoseEstimate& before, const S
   if (!measured.bearing && !unscented)
     corrected = correct_curvature(measured, before, robot_from_sensor, landmark.at);
   const SeenLandmark& seen = corrected ? *corrected : measured;
-  const LinearSighting line = unscented ? by_regression(before, robot_from_sensor, landmark.at)
-                                        : by_derivatives(before, robot_from_sensor, landmark.at);
+  const LinearSighting line = unscented ? by_regression(before, robot_from_sensor, seen, landmark)
+                                        : by_derivatives(before, robot_from_sensor, seen, landmark);
   const auto at = std::ranges::lower_bound(errors_, landmark.key, {}, &Entry::key);
   const bool known = at != errors_.end() && at->key == landmark.key;
   Linear all{.key = landmark.key,
              .innovation = innovation(seen, line.value),
              .by_pose = line.by_pose,
              .by_landmark = line.by_landmark,
-             .map_error = landmark.covariance / trust,
+             .map_error = error_of(seen, landmark, (before.pose * robot_from_sensor).at()) / trust,
              .noise = sensor_noise(seen) / trust + line.residual,
              .with_landmark = WithLandmark::Zero()};
   if (known) all.with_landmark = limit_correlation(at->covariance, before.covariance, all.map_error);

@@ -22,6 +22,29 @@ ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, cons
   return e;
 }
 
+ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, const SeenLandmark& seen,
+                        const MapLandmark& landmark) {
+  if (!seen.extent || !landmark.is_line()) return expect(robot, robot_from_sensor, landmark.at);
+  const Eigen::Vector2d sensor = (robot * robot_from_sensor).at(), lever = sensor - robot.at();
+  const Eigen::Vector2d& n = landmark.normal;
+  ExpectedSighting e;
+  e.value << n.dot(sensor - landmark.at), 0;
+  e.by_landmark << -n.x(), -n.y(), 0, 0;
+  e.by_pose << n.x(), n.y(), n.dot(Eigen::Vector2d(-lever.y(), lever.x())), 0, 0, 0;
+  return e;
+}
+
+bool may_overlap(const LineExtent& seen, const Eigen::Vector2d& sensor, const MapLandmark& line,
+                 double slack) {
+  const double middle = line.along().dot(line.at - sensor);
+  return seen.from <= middle + line.half_length + slack && seen.to >= middle - line.half_length - slack;
+}
+
+double swing_variance(const MapLandmark& line, const Eigen::Vector2d& sensor) {
+  const double middle = line.along().dot(line.at - sensor);
+  return middle * middle * line.normal_variance;
+}
+
 Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expected) {
   return {seen.range ? *seen.range - expected[0] : 0,
           seen.bearing ? wrap_angle(*seen.bearing - expected[1]) : 0};
@@ -35,7 +58,7 @@ Eigen::Matrix2d sensor_noise(const SeenLandmark& seen) {
 
 SeenLandmark correct_curvature(const SeenLandmark& seen, const PoseEstimate& robot,
                                const Pose2& robot_from_sensor, const Eigen::Vector2d& landmark) {
-  if (seen.bearing) return seen;
+  if (seen.bearing || seen.extent) return seen;
   const Eigen::Vector2d lever = (robot.pose * robot_from_sensor).at() - robot.pose.at();
   const Eigen::Vector2d to = landmark - robot.pose.at() - lever;
   const double range = to.norm();

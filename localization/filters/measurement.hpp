@@ -17,6 +17,19 @@ struct ExpectedSighting {
 /// below 1 mm is taken as 1 mm.
 ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, const Eigen::Vector2d& landmark);
 
+/// Returns the measurement expected at a pose. Of a sighted line, row 0 is the sensor's distance from it,
+/// negative behind it, and row 1 is 0.
+ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, const SeenLandmark& seen,
+                        const MapLandmark& landmark);
+
+/// Returns whether the sighted piece of a line may belong to a line of the map. `slack`: metres by which the
+/// sensor may lie elsewhere along it.
+bool may_overlap(const LineExtent& seen, const Eigen::Vector2d& sensor, const MapLandmark& line,
+                 double slack);
+
+/// Returns the variance of the distance from a line that its uncertain direction causes at the sensor, m^2.
+double swing_variance(const MapLandmark& line, const Eigen::Vector2d& sensor);
+
 /// Returns measured minus expected, the bearing wrapped. The row of a missing number is 0.
 Eigen::Vector2d innovation(const SeenLandmark& seen, const Eigen::Vector2d& expected);
 

@@ -245,7 +245,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
       const MapLandmark& landmark = map[match.pairing.landmark];
       name_landmark(match, landmark);
       const SeenLandmark& s = seen.sightings[places[k]];
-      match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, landmark.at),
+      match.pairing.evidence = evidence_of(s, expect(before.pose, seen.robot_from_sensor, s, landmark),
                                            landmark.covariance, noise_divisor(landmark, identification));
     }
   }

@@ -16,7 +16,7 @@ std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const 
   if (!finder_samples_.empty() && random.bernoulli(0.5))
     return finder_samples_[random.uniform_index(finder_samples_.size())];
   const SeenLandmark& s = seen.sightings[random.uniform_index(seen.sightings.size())];
-  if (!s.is_valid() || map.empty()) return {};
+  if (!s.is_valid() || s.extent || map.empty()) return {};  // a line gives no position
   const auto known = matcher_.options().use_identities && s.identity ? map.find(*s.identity) : std::nullopt;
   const std::uint32_t l = known ? *known : static_cast<std::uint32_t>(random.uniform_index(map.size()));
   if (!known && !s.may_be(map[l].type)) return {};

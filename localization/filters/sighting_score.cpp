@@ -10,6 +10,7 @@
 namespace waymark::localization {
 namespace {
 
+constexpr double kLineSlack = 0.5;  // m along a line: its ends are hidden, or cut by cells
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
 /// Number of poses evaluated side by side in vector registers.
@@ -117,11 +118,14 @@ SightingScore::SightingScore(const SightingSet& seen, const LandmarkGrid& map, c
                .clutter = identification.clutter_of(s),
                .gate = gate,
                .candidates = {}};
-    if (!s.bearing)
+    if (s.extent)
+      p.radius = std::hypot(far, std::max(std::abs(s.extent->from), std::abs(s.extent->to))) +
+                 map.max_half_length() + kLineSlack;
+    else if (!s.bearing)
       p.radius = far + sigmas * (s.range_sd + map.largest_sd());
     else if (s.range)
       p.radius = sigmas * std::max(s.range_sd, far * std::min(s.bearing_sd, 1.0)) + sigmas * map.largest_sd();
-    p.known = identification.use_identities && s.identity;
+    p.known = identification.use_identities && s.identity && !s.extent;
     if (s.type)
       for (std::size_t i = 0; i < kMaxFeatures; ++i)
         p.turns = p.turns || (s.features.known(i) && scales.is_angle(*s.type, i));
@@ -229,6 +233,15 @@ SightingScore::PositionMatch<T> SightingScore::match_position(const Prepared& p,
   return {(d * off * off + 2 * b * off * turn + a * turn * turn) * inverse_det, inverse_det};
 }
 
+SightingScore::PositionMatch<double> SightingScore::match_line(const Prepared& p, std::uint32_t landmark,
+                                                               const Eigen::Vector2d& sensor) const {
+  const MapLandmark& l = (*map_)[landmark];
+  const double off = *p.seen.range - l.normal.dot(sensor - l.at);
+  const double inverse =
+      1 / (p.range_variance + l.normal.dot(map_covariance(landmark) * l.normal) + swing_variance(l, sensor));
+  return {off * off * (paper_ ? 1 / p.range_variance : inverse), inverse};
+}
+
 template <class T>
 T SightingScore::value(const PositionMatch<T>& place, const PoseFreeTerms& pose_free_terms) const {
   using std::exp;
@@ -265,7 +278,10 @@ SightingScore::Best SightingScore::best(const Prepared& p, const View<double>& v
   map_->near(centre, p.radius, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (!p.seen.may_be(l.type)) return;
-    const auto there = match_position(p, l.at, map_covariance(i), view);
+    const Eigen::Vector2d sensor(view.x, view.y);
+    if (p.seen.extent && !(l.is_line() && may_overlap(*p.seen.extent, sensor, l, kLineSlack))) return;
+    const auto there =
+        p.seen.extent ? match_line(p, i, sensor) : match_position(p, l.at, map_covariance(i), view);
     if (!(there.squares <= p.gate)) return;
     if (const auto alike = pose_free_terms(p, i)) take(there, *alike, i);
   });

@@ -105,6 +105,8 @@ class SightingScore {
   template <class T>
   PositionMatch<T> match_position(const Prepared& p, const Eigen::Vector2d& at,
                                   const Eigen::Matrix2d& covariance, const View<T>& view) const;
+  PositionMatch<double> match_line(const Prepared& p, std::uint32_t landmark,
+                                   const Eigen::Vector2d& sensor) const;
   template <class T>
   T value(const PositionMatch<T>& place, const PoseFreeTerms& pose_free_terms) const;
   std::optional<PoseFreeTerms> pose_free_terms(const Prepared& p, std::uint32_t landmark) const;

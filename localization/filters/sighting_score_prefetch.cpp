@@ -43,6 +43,8 @@ void SightingScore::prefetch(std::span<const Pose2> poses) {
 // `sensor`: that of the cloud's middle; the others are within `radius` metres of it.
 void SightingScore::prefetch(Prepared& p, const Pose2& sensor, double radius) {
   p.candidates.clear();
+  p.prefetched = false;
+  if (p.seen.extent) return;  // of a line each pose sees another piece
   const double swing = p.ahead * std::min(cloud_.turn, 2.0);
   // Each particle of a wide cloud has its own landmarks.
   p.prefetched = radius + swing < 4 * p.radius;

@@ -29,6 +29,13 @@ double gate_of(const IdentificationOptions& options, int freedom) {
   return gates[static_cast<std::size_t>(std::clamp(freedom, 1, kMaxFreedom))];
 }
 
+/// Returns the metres by which a sighted line may lie beside its line on the map, along it.
+double line_slack(const PoseEstimate& robot, double farthest) {
+  constexpr double kEnds = 0.5;  // m: ends are hidden, or cut by cells
+  const double turn = std::sqrt(std::max(0.0, robot.covariance(2, 2)));
+  return kEnds + 3 * (largest_sd(robot.covariance.topLeftCorner<2, 2>()) + std::min(turn, 1.0) * farthest);
+}
+
 /// Returns the landmarks of its type that may pass the gate of a sighting; others cannot.
 std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Pose2& sensor,
                                               const PoseEstimate& robot, const LandmarkGrid& map,
@@ -50,6 +57,16 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));
   };
+  if (seen.extent) {
+    const double farthest = std::max(std::abs(seen.extent->from), std::abs(seen.extent->to));
+    const double slack = line_slack(robot, farthest);
+    const double reach =
+        std::hypot(*seen.range, farthest) + map.max_half_length() + slack + sigmas * noise * seen.range_sd;
+    map.near(sensor.at(), reach, [&](std::uint32_t i) {
+      if (map[i].is_line() && may_overlap(*seen.extent, sensor.at(), map[i], slack)) keep(i);
+    });
+    return found;
+  }
   if (!seen.bearing) {  // a ring
     const double width = apex + sigmas * noise * seen.range_sd;
     map.near(sensor.at(), *seen.range + width, [&](std::uint32_t i) {
@@ -96,6 +113,7 @@ class WidestGate {
   }
 
   bool excludes(const MapLandmark& landmark) const {
+    if (seen_.extent) return false;
     const Eigen::Vector2d to = landmark.at - sensor_;
     const double square = to.squaredNorm(), range = std::sqrt(square),
                  trust = noise_divisor(landmark, options_);
@@ -336,6 +354,7 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
   for (const std::uint32_t i : reach) {
     const MapLandmark& landmark = map[i];
     if (!known && !seen.may_be(landmark.type)) continue;
+    if (seen.extent && !landmark.is_line()) continue;
     // `too_far` is final: only landmarks inside the gate still count.
     if (result.verdict == Verdict::too_far && widest.excludes(landmark)) continue;
     FeatureComparison features;
@@ -349,11 +368,14 @@ Candidates candidates(const SeenLandmark& seen, const Pose2& robot_from_sensor, 
       if (result.verdict == Verdict::nothing_near) result.verdict = Verdict::features_differ;
       continue;
     }
-    const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, landmark.at);
+    const ExpectedSighting expected = expect(robot.pose, robot_from_sensor, seen, landmark);
+    Eigen::Matrix2d map_error = landmark.covariance;
+    if (seen.extent)
+      map_error += swing_variance(landmark, sensor.at()) * landmark.normal * landmark.normal.transpose();
     CandidatePair p{
         .landmark = i,
-        .evidence = seen.bearing
-                        ? evidence_of(seen, expected, landmark.covariance, noise_divisor(landmark, options))
+        .evidence = seen.bearing || seen.extent
+                        ? evidence_of(seen, expected, map_error, noise_divisor(landmark, options))
                         : evidence_of(correct_curvature(seen, robot, robot_from_sensor, landmark.at),
                                       expected, landmark.covariance, noise_divisor(landmark, options))};
     // Angles depend on the heading as bearings do: they are rows of the innovation, not features apart.

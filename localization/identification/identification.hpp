@@ -56,8 +56,9 @@ struct IdentificationOptions {
   std::string_view chosen_association() const;
   /// Returns the smallest probability of an accepted pairing of a sighting.
   double required_certainty(const SeenLandmark& seen) const {
-    const bool is_line = !seen.has_position() && !seen.elevation && !(use_identities && seen.identity);
-    return is_line ? std::max(certainty, bearing_certainty) : certainty;
+    const bool is_locus =
+        !seen.has_position() && !seen.extent && !seen.elevation && !(use_identities && seen.identity);
+    return is_locus ? std::max(certainty, bearing_certainty) : certainty;
   }
   /// Returns the largest range of a sighting without range. What is seen on the horizon, such as summits, is
   /// seen beyond the range of a sensor.

@@ -14,6 +14,7 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
   for (const MapLandmark& landmark : landmarks) {
     bounds_.extend(landmark.at);
     largest_sd_ = std::max(largest_sd_, core::largest_sd(landmark.covariance));
+    max_half_length_ = std::max(max_half_length_, landmark.half_length);
     min_quality_ = std::min(min_quality_, landmark.paper_quality);
   }
   const Eigen::Vector2d size = bounds_.sizes();

@@ -23,8 +23,9 @@ class LandmarkGrid {
   std::size_t size() const { return landmarks_.size(); }
   bool empty() const { return landmarks_.empty(); }
   Eigen::AlignedBox2d bounds() const { return bounds_; }
-  double largest_sd() const { return largest_sd_; }    ///< of any landmark's position, m
-  double min_quality() const { return min_quality_; }  ///< least `paper_quality`
+  double largest_sd() const { return largest_sd_; }            ///< of any landmark's position, m
+  double max_half_length() const { return max_half_length_; }  ///< of any line, m; 0 without lines
+  double min_quality() const { return min_quality_; }          ///< least `paper_quality`
 
   /// Returns the index of a landmark by key.
   std::optional<std::uint32_t> find(LandmarkKey key) const;
@@ -65,7 +66,7 @@ class LandmarkGrid {
   std::vector<std::uint32_t> first_;  ///< index of each cell's first landmark; one more than cells
   std::unordered_map<LandmarkKey, std::uint32_t> by_key_;
   Eigen::AlignedBox2d bounds_;
-  double cell_ = 1, largest_sd_ = 0, min_quality_ = 1;
+  double cell_ = 1, largest_sd_ = 0, min_quality_ = 1, max_half_length_ = 0;
   std::int64_t columns_ = 0, rows_ = 0;
 };
 

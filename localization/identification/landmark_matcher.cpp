@@ -9,6 +9,7 @@ namespace waymark::localization {
 namespace {
 
 constexpr double kMinRange = 1, kMinTurn = 0.35;  // m, rad: of a view
+constexpr double kLongLine = 100;                 // m, half of a line of the map
 constexpr double kPrior = 1;                      // sightings of the map, and not of it, before any is known
 
 }  // namespace
@@ -57,7 +58,9 @@ const LandmarkGrid& LandmarkMatcher::landmarks_near(const SightingSet& seen, con
                                                     double view_range) {
   double farthest = std::max(view_range, clutter_.view_range());
   for (const SeenLandmark& s : seen.sightings)
-    if (s.is_valid())
+    if (s.is_valid() && s.extent)
+      farthest = std::max(farthest, std::max(std::abs(s.extent->from), std::abs(s.extent->to)) + kLongLine);
+    else if (s.is_valid())
       farthest = std::max(farthest, s.range ? *s.range + 6 * s.range_sd : options_.reach_of(s, scales_));
   const double width = std::sqrt(robot.covariance(0, 0) + robot.covariance(1, 1));
   const double mount = seen.robot_from_sensor.at().norm();

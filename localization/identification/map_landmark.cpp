@@ -24,7 +24,28 @@ Eigen::Matrix2d usable(const Eigen::Matrix3d& covariance) {
   return sound;
 }
 
+/// Makes a line of a landmark whose direction and length are known; without them it remains a point.
+void set_line(MapLandmark& landmark, const LineFeatures& line) {
+  if (!landmark.features.known(line.direction) || !(landmark.features.value[line.length] > 0)) return;
+  const double azimuth = landmark.features.value[line.direction];
+  landmark.normal = {std::sin(azimuth), std::cos(azimuth)};
+  landmark.normal_variance = landmark.features.variance[line.direction];
+  landmark.half_length = landmark.features.value[line.length] / 2;
+}
+
 }  // namespace
+
+std::optional<LineFeatures> line_features(const LandmarkType& type) {
+  const auto index = [&](std::string_view name) {
+    return static_cast<std::size_t>(std::ranges::find(type.features, name, &FeatureSpec::name) -
+                                    type.features.begin());
+  };
+  const LineFeatures line{index("direction"), index("length")};
+  if (!(std::max(line.direction, line.length) < std::min(type.features.size(), kMaxFeatures)) ||
+      type.features[line.direction].scale != Scale::direction)
+    return {};
+  return line;
+}
 
 LandmarkKey landmark_key(std::string_view uid) {
   return named_seed(0, uid);
@@ -62,6 +83,7 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   for (std::size_t i = 0; i < std::min(type.features.size(), landmark.features.size()); ++i)
     if (type.features[i].name == type.body.feature && landmark.features[i].value > 0)
       robots.diameter = 2 * type.body.radius_per_value * landmark.features[i].value;
+  if (const auto line = line_features(type)) set_line(robots, *line);
   return robots;
 }
 

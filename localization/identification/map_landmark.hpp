@@ -2,6 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 #include "landmarks/semantic_map.hpp"
@@ -27,7 +28,25 @@ struct MapLandmark {
   double paper_quality = 1;
   KnownFeatures features;
   double diameter = 0;  ///< m, of its body; 0: unknown
+  /// Of a line, such as a wall: unit vector across it to the side from which it is seen. 0: it is a point.
+  Eigen::Vector2d normal = Eigen::Vector2d::Zero();
+  double half_length = 0;      ///< m, of a line
+  double normal_variance = 0;  ///< rad^2
+
+  bool is_line() const { return half_length > 0; }
+  /// Returns the unit vector along a line, to the left of its normal.
+  Eigen::Vector2d along() const { return {-normal.y(), normal.x()}; }
 };
+
+/// Features of a type whose landmarks are straight lines, such as walls: the direction of the normal and the
+/// length. A line is known across itself only.
+struct LineFeatures {
+  std::size_t direction = 0, length = 0;
+};
+
+/// Returns the features of lines; `std::nullopt` for a type that lacks a direction named `direction` or a
+/// `length` among its compared features.
+std::optional<LineFeatures> line_features(const LandmarkType& type);
 
 /// Quality of a landmark that was observed but not assessed, the mean of a quality that may be anything. With
 /// 1, which eq. 7 gives to a single observation, it would outrank every landmark that images agree on.

@@ -39,7 +39,7 @@ int measured_rows(const SeenLandmark& seen) {
 }  // namespace
 
 bool is_usable(const SeenLandmark& seen, const SlamOptions& options) {
-  if (!seen.is_valid() || seen.type == kNoSuchType) return false;
+  if (!seen.is_valid() || seen.type == kNoSuchType || seen.extent) return false;  // landmarks are points
   return !seen.range || *seen.range <= options.max_range || (!seen.bearing && is_identified(seen, options));
 }
 

@@ -67,6 +67,9 @@ void describe_drive_laser(DriveSettings& d, OptionVisitor& field) {
          .max = 50});
 }
 
+void describe_drive_scanner(DriveSettings& d, OptionVisitor& field) {
+  describe_scanner(d.scanner, field);
+}
 void describe_drive_stereo(DriveSettings& d, OptionVisitor& field) {
   describe_stereo(d.stereo, field);
 }
@@ -144,6 +147,7 @@ const std::vector<DrivePart>& drive_parts() {
       {"", "A vehicle that drives over the site and measures", describe_drive},
       {"odometry", "Wheel slip and odometry errors", describe_odometry},
       {"laser", "Line scanner: one on a rover, two on a harvester", describe_drive_laser},
+      {"scanner", "3-D scanner of a robot in a street or a hall", describe_drive_scanner},
       {"stereo", "Depth camera: a stereo pair or time of flight", describe_drive_stereo},
       {"camera", "Camera that measures bearings to landmarks", describe_drive_camera},
       {"panorama", "Skyline of the full circle", describe_drive_panorama},

@@ -10,6 +10,7 @@
 #include "testbed/drive/laser_scanner.hpp"
 #include "testbed/drive/laser_targets.hpp"
 #include "testbed/drive/panorama.hpp"
+#include "testbed/drive/scanner_model.hpp"
 #include "testbed/drive/stereo_camera.hpp"
 #include "testbed/dynamics/soil.hpp"
 namespace waymark::testbed {
@@ -93,6 +94,7 @@ struct DriveSettings {
   OdometryModel odometry;
   LaserModel laser;
   double laser_height = 0;  ///< metres above the ground; 0: rover 0.35, harvester 2
+  ScannerModel scanner;
   StereoModel stereo;
   BearingModel camera;
   PanoramaModel panorama;

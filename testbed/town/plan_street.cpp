@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kHouseDepth = 9, kAlley = 3;                      // m
 constexpr double kKerb = 3.5;                                      // m from the facade to the kerb
+constexpr double kHouseHeight = 8, kSignMiddle = 2.2;              // m above the pavement
 constexpr double kCarLength = 4.4, kCarWidth = 1.8, kSpace = 5.5;  // m
 constexpr double kStreetHalfTurn = std::numbers::pi;
 
@@ -22,33 +23,65 @@ class StreetSide {
         side_(side),
         random_(seed, side > 0 ? "north" : "south"),
         drive_(drive_seed, side > 0 ? "cars north" : "cars south"),
+        surfaces_(seed, side > 0 ? "surfaces north" : "surfaces south"),
+        vans_(drive_seed, side > 0 ? "vans north" : "vans south"),
         town_(town) {}
 
   void plan() {
+    kerb();
     houses();
     row(model_.pole_spacing, 0.5, [&](const Eigen::Vector2d& at) {
       post(at, random_.uniform(0.12, 0.2), "pole", "lamp", random_.uniform(4, 8));
     });
     row(model_.sign_spacing, 0.8, [&](const Eigen::Vector2d& at) {
       post(at, 0.08, "pole", "sign", 2.5);
+      plate(at);
       town_.landmarks.push_back({.type = "traffic_sign",
                                  .kind = {},
                                  .at = at,
                                  .facing = side_ > 0
                                                ? kStreetHalfTurn / 2
                                                : -kStreetHalfTurn / 2,  // towards who drives on this side
-                                 .height = 2.2});
+                                 .height = kSignMiddle});
     });
     row(model_.tree_spacing, 1.2, [&](const Eigen::Vector2d& at) {
       post(at, random_.uniform(0.35, 0.7), "tree", "", random_.uniform(6, 15));
+      town_.crowns.push_back(
+          {.at = {at.x(), at.y(), surfaces_.uniform(4, 5)}, .radius = surfaces_.uniform(1.2, 2)});
     });
     bollards();
+    reflectors();
     cars();
   }
 
  private:
   Eigen::Vector2d at(double along, double from_kerb) const {
     return {along, side_ * (model_.width / 2 - kKerb + from_kerb)};
+  }
+
+  void kerb() {
+    const double y = side_ * (model_.width / 2 - kKerb), half = model_.length / 2 + 10;
+    const double height = surfaces_.uniform(0.08, 0.16);
+    town_.kerb = std::abs(y);
+    (side_ > 0 ? town_.kerb_north : town_.kerb_south) = height;
+    town_.walls.push_back({.from = {-half, y}, .to = {half, y}, .bottom = 0, .top = height});
+    town_.landmarks.push_back({.type = "curb",
+                               .kind = {},
+                               .at = {0, y},
+                               .direction = side_ > 0 ? kStreetHalfTurn : 0,
+                               .height = height,
+                               .length = 2 * half});
+  }
+
+  /// The plate of a sign in front of its post.
+  void plate(const Eigen::Vector2d& at) {
+    const double half = surfaces_.uniform(0.25, 0.4), middle = town_.ground(at) + kSignMiddle;
+    const double x = at.x() + side_ * 0.06;
+    town_.walls.push_back({.from = {x, at.y() - half},
+                           .to = {x, at.y() + half},
+                           .bottom = middle - half,
+                           .top = middle + half,
+                           .surface = {.reflectivity = 1, .retro = true}});
   }
 
   void houses() {
@@ -58,11 +91,15 @@ class StreetSide {
       const double y0 = side_ > 0 ? front : -front - kHouseDepth;
       add_outline(town_, {{x, y0}, {x + length, y0}, {x + length, y0 + kHouseDepth}, {x, y0 + kHouseDepth}},
                   false);
+      const TownSurface surface{.reflectivity = surfaces_.uniform(0.2, 0.5),
+                                .gloss = surfaces_.bernoulli(0.3) ? 0.5 : 0};
+      for (auto wall = town_.walls.end() - 4; wall != town_.walls.end(); ++wall)
+        wall->top = kHouseHeight, wall->surface = surface, wall->has_windows = true;
       town_.landmarks.push_back({.type = "wall",
                                  .kind = {},
                                  .at = {x + length / 2, side_ * front},
                                  .direction = side_ > 0 ? kStreetHalfTurn : 0,
-                                 .height = 8,
+                                 .height = kHouseHeight,
                                  .length = length});
       x += length + (random_.bernoulli(0.5) ? kAlley : 1);
     }
@@ -70,10 +107,14 @@ class StreetSide {
 
   template <class Put>
   void row(double spacing, double from_kerb, const Put& put) {
+    row_of(random_, spacing, from_kerb, put);
+  }
+  template <class Put>
+  void row_of(Random& random, double spacing, double from_kerb, const Put& put) {
     if (!(spacing > 0)) return;
-    for (double x = -model_.length / 2 + spacing * random_.uniform(0.2, 0.6); x < model_.length / 2;
-         x += spacing * random_.uniform(0.85, 1.15))
-      put(at(x, from_kerb + random_.uniform(-0.1, 0.1)));
+    for (double x = -model_.length / 2 + spacing * random.uniform(0.2, 0.6); x < model_.length / 2;
+         x += spacing * random.uniform(0.85, 1.15))
+      put(at(x, from_kerb + random.uniform(-0.1, 0.1)));
   }
 
   void post(const Eigen::Vector2d& where, double diameter, const char* type, const char* kind,
@@ -82,7 +123,8 @@ class StreetSide {
       return (p.at - where).norm() < p.radius + diameter / 2 + 0.5;
     };
     if (std::ranges::any_of(town_.posts, near)) return;
-    town_.posts.push_back({.at = where, .radius = diameter / 2});
+    town_.posts.push_back(
+        {.at = where, .radius = diameter / 2, .to = {}, .top = std::min(height, 8.0) + town_.ground(where)});
     town_.landmarks.push_back(
         {.type = type, .kind = kind, .at = where, .diameter = diameter, .height = height});
   }
@@ -96,6 +138,15 @@ class StreetSide {
     }
   }
 
+  /// Posts with reflecting tape at the kerb, in gaps between the others.
+  void reflectors() {
+    row_of(surfaces_, model_.reflector_spacing, 0.4, [&](const Eigen::Vector2d& at) {
+      const std::size_t before = town_.posts.size();
+      post(at, 0.1, "beacon", "", 1.2);
+      if (town_.posts.size() > before) town_.posts.back().surface = {.reflectivity = 1, .retro = true};
+    });
+  }
+
   void cars() {
     for (double x = -model_.length / 2; x + kSpace < model_.length / 2; x += kSpace) {
       const bool taken = drive_.bernoulli(model_.parked);
@@ -106,14 +157,16 @@ class StreetSide {
       std::vector<Eigen::Vector2d> hull = {{from + bevel, y - w}, {to - bevel, y - w},  {to, y - w + bevel},
                                            {to, y + w - bevel},   {to - bevel, y + w},  {from + bevel, y + w},
                                            {from, y + w - bevel}, {from, y - w + bevel}};
+      const double top = vans_.bernoulli(0.15) ? 2.3 : 1.5;
       for (std::size_t i = 0; i < hull.size(); ++i)
-        town_.walls.push_back({hull[i], hull[(i + 1) % hull.size()]});
+        town_.walls.push_back(
+            {.from = hull[i], .to = hull[(i + 1) % hull.size()], .bottom = 0.15, .top = top});
     }
   }
 
   const StreetModel& model_;
   double side_;
-  Random random_, drive_;
+  Random random_, drive_, surfaces_, vans_;
   Town& town_;
 };
 

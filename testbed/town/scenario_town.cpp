@@ -17,6 +17,12 @@ void describe_street(Scenario& s, OptionVisitor& field) {
         {.help = "Spacing of the signs of a side, metres; 0: none", .min = 0, .max = 1e3});
   field("tree_spacing", m.tree_spacing,
         {.help = "Spacing of the trees of a side, metres; 0: none", .min = 0, .max = 1e3});
+  field(
+      "reflector_spacing", m.reflector_spacing,
+      {.help = "Spacing of posts with reflecting tape of a side, metres; 0: none. With them the line scanner "
+               "logs intensities",
+       .min = 0,
+       .max = 1e3});
   field("parked", m.parked,
         {.help = "Fraction of the parking spaces taken, others in each drive", .min = 0, .max = 1});
 }

@@ -39,23 +39,18 @@ Eigen::Vector2d TownPost::at_time(double t) const {
   return at + (phase < 1 ? phase : 2 - phase) * (to - at);
 }
 
+std::optional<TownHit> Town::hit(const Eigen::Vector2d& from, const Eigen::Vector2d& along, double t) const {
+  constexpr double kLineScanner = 0.5;  // m above the road: below the plates of signs, above kerbs
+  TownHit nearest{.range = std::numeric_limits<double>::infinity()};
+  visit_hits(from, along, t, [&](const TownHit& hit) {
+    if (hit.range < nearest.range && hit.bottom <= kLineScanner && hit.top >= kLineScanner) nearest = hit;
+  });
+  return nearest.surface ? std::optional(nearest) : std::nullopt;
+}
+
 std::optional<double> Town::cast(const Eigen::Vector2d& from, const Eigen::Vector2d& along, double t) const {
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const TownWall& wall : walls) {
-    const Eigen::Vector2d run = wall.to - wall.from, off = wall.from - from;
-    const double area = cross_of(along, run);
-    if (std::abs(area) < 1e-12) continue;
-    const double range = cross_of(off, run) / area, part = cross_of(off, along) / area;
-    if (range > 0 && range < nearest && part >= 0 && part <= 1) nearest = range;
-  }
-  for (const TownPost& post : posts) {
-    const Eigen::Vector2d off = post.at_time(t) - from;
-    const double middle = off.dot(along), aside = cross_of(along, off);
-    if (std::abs(aside) >= post.radius) continue;
-    const double range = middle - std::sqrt(post.radius * post.radius - aside * aside);
-    if (range > 0) nearest = std::min(nearest, range);
-  }
-  return std::isfinite(nearest) ? std::optional(nearest) : std::nullopt;
+  const auto first = hit(from, along, t);
+  return first ? std::optional(first->range) : std::nullopt;
 }
 
 void add_outline(Town& town, const std::vector<Eigen::Vector2d>& outline, bool from_inside) {

@@ -7,10 +7,12 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "core/random.hpp"
 #include "testbed/drive/drive.hpp"
 #include "testbed/drive/ranges_text.hpp"
+#include "testbed/town/town_scanner.hpp"
 
 namespace waymark::testbed {
 namespace {
@@ -22,6 +24,28 @@ Terrain level_ground(const std::vector<Eigen::Vector2d>& path) {
   for (const Eigen::Vector2d& p : path) low = low.cwiseMin(p), high = high.cwiseMax(p);
   const Eigen::Vector2d size = high - low + Eigen::Vector2d::Constant(2 * kMargin);
   return {Grid<float>(2, 2, 0.0F), low.x() - kMargin, high.y() + kMargin, size.x(), size.y()};
+}
+
+/// Returns the strengths of the returns of a sweep: that of the strongest surface at the range within the
+/// beam.
+std::string intensities_text(const Town& town, const DriveStep& step, const localization::LaserScan& scan,
+                             std::uint64_t seed) {
+  Random random(seed, "intensities");
+  constexpr double kSameRange = 0.25;  // m
+  const double width = scan.angle_step;
+  std::string text;
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
+    float strongest = 0;
+    const double range = static_cast<double>(scan.ranges[i]);
+    for (const double off : {-0.4, 0.0, 0.4}) {
+      const double angle = step.at.plane.yaw + scan.first_angle + (static_cast<double>(i) + off) * width;
+      const auto hit = town.hit(step.at.plane.at(), {std::cos(angle), std::sin(angle)}, step.t);
+      if (hit && range > 0 && std::abs(hit->range - range) < kSameRange)
+        strongest = std::max(strongest, strength_of(*hit, random));
+    }
+    text += fmt::format("{}{:.3g}", i ? "," : "", strongest);
+  }
+  return text;
 }
 
 std::string scan_line(const Town& town, const DriveStep& step, const LaserModel& laser, std::uint64_t seed) {
@@ -38,7 +62,20 @@ std::string scan_line(const Town& town, const DriveStep& step, const LaserModel&
       "\"beam_width\":{:.6f},\"ranges\":[",
       step.t, scan.first_angle, scan.angle_step, scan.max_range,
       laser.perfect ? 0 : to_radians(laser.divergence).value * std::max(0.0, 1 - 2 * laser.sensitivity));
-  return line + ranges_text(scan.ranges, 3) + "]}\n";
+  const std::string ranges = line + ranges_text(scan.ranges, 3) + "]";
+  const bool has_reflectors =
+      std::ranges::any_of(town.posts, [](const TownPost& p) { return p.surface.retro; });
+  return ranges +
+         (has_reflectors ? ",\"intensities\":[" + intensities_text(town, step, scan, seed) + "]}\n" : "}\n");
+}
+
+/// Writes a turn of the 3-D scanner and returns its record.
+std::string points_line(const Town& town, const DriveStep& step, const ScannerModel& scanner,
+                        std::uint64_t seed, std::size_t index, const TownFileSink& sink) {
+  Random random(seed);
+  const std::string name = fmt::format("points/{:06}.bin", index);
+  sink(name, kitti_bytes(turn_of_scanner(town, step.at.plane, step.t, scanner, random)));
+  return fmt::format("{{\"kind\":\"points\",\"t\":{:.3f},\"file\":\"{}\"}}\n", step.t, name);
 }
 
 }  // namespace
@@ -55,7 +92,8 @@ DriveSettings town_settings() {
   return settings;
 }
 
-TownDrive drive_through(const Town& town, const DriveSettings& settings, std::uint64_t seed) {
+TownDrive drive_through(const Town& town, const DriveSettings& settings, std::uint64_t seed,
+                        const TownFileSink& sink) {
   const std::vector<DriveStep> steps =
       drive_along(level_ground(town.path), {}, town.path, settings, seed).steps;
   Random random(seed, "start");
@@ -78,6 +116,11 @@ TownDrive drive_through(const Town& town, const DriveSettings& settings, std::ui
   double next = 0;
   for (std::size_t i = 0; i < steps.size(); ++i)
     if (settings.laser.on && steps[i].t >= next - 1e-9) scans[i] = true, next += settings.laser.every;
+  std::vector<std::optional<std::size_t>> turns(steps.size());
+  next = 0;
+  for (std::size_t i = 0, count = 0; i < steps.size(); ++i)
+    if (sink && settings.scanner.on && steps[i].t >= next - 1e-9)
+      turns[i] = count++, next += settings.scanner.every;
   tbb::parallel_for(std::size_t{0}, steps.size(), [&](std::size_t i) {
     const DriveStep& s = steps[i];
     lines[i] = fmt::format("{{\"kind\":\"odometry\",\"t\":{:.3f},\"v\":{:.5f},\"omega\":{:.6f}}}\n", s.t,
@@ -87,6 +130,8 @@ TownDrive drive_through(const Town& town, const DriveSettings& settings, std::ui
           fmt::format("{{\"kind\":\"truth\",\"t\":{:.3f},\"x\":{:.4f},\"y\":{:.4f},\"yaw\":{:.5f}}}\n", s.t,
                       s.at.plane.x, s.at.plane.y, s.at.plane.yaw);
     if (scans[i]) lines[i] += scan_line(town, s, settings.laser, named_seed(seed, "laser") + i);
+    if (turns[i])
+      lines[i] += points_line(town, s, settings.scanner, named_seed(seed, "scanner") + i, *turns[i], sink);
   });
   for (std::size_t i = 0; i < steps.size(); ++i) {
     drive.log += lines[i];

@@ -7,14 +7,15 @@ namespace waymark::testbed {
 struct StreetModel {
   bool on = false;
   double length = 150;
-  double width = 16;         ///< between the facades
-  double max_setback = 2;    ///< of a house behind the line of the street
-  double house_length = 12;  ///< mean
-  double pole_spacing = 18;  ///< of the lamps of one side
-  double bollards = 0.15;    ///< per metre of street, in groups
-  double sign_spacing = 30;  ///< of traffic signs of one side
-  double tree_spacing = 25;  ///< of the trees of one side
-  double parked = 0.5;       ///< fraction of the parking spaces taken; others in each drive
+  double width = 16;             ///< between the facades
+  double max_setback = 2;        ///< of a house behind the line of the street
+  double house_length = 12;      ///< mean
+  double pole_spacing = 18;      ///< of the lamps of one side
+  double bollards = 0.15;        ///< per metre of street, in groups
+  double sign_spacing = 30;      ///< of traffic signs of one side
+  double tree_spacing = 25;      ///< of the trees of one side
+  double reflector_spacing = 0;  ///< of reflecting posts of one side; 0: none
+  double parked = 0.5;           ///< fraction of the parking spaces taken; others in each drive
 };
 
 /// A floor of a building: a corridor around a core, with rooms outside. Lengths in metres.

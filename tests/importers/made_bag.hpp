@@ -81,12 +81,13 @@ inline MadeMessage made_pose(bool big, double t, double x, double y, double yaw,
 }
 
 inline MadeMessage made_scan(bool big, double t, double first, double step, const std::vector<float>& ranges,
-                             const std::string& topic = "/scan") {
+                             const std::string& topic = "/scan", const std::vector<float>& intensities = {}) {
   MadeCdr cdr(big);
   cdr.header(t, "laser").add(float(first)).add(float(first + step * double(ranges.size() - 1)));
   cdr.add(float(step)).add(0.f).add(0.f).add(0.1f).add(30.f).add(static_cast<std::uint32_t>(ranges.size()));
   for (const float r : ranges) cdr.add(r);
-  cdr.add(std::uint32_t{0});
+  cdr.add(static_cast<std::uint32_t>(intensities.size()));
+  for (const float intensity : intensities) cdr.add(intensity);
   return {topic, "sensor_msgs/msg/LaserScan", cdr.bytes()};
 }
 

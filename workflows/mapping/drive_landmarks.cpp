@@ -14,6 +14,7 @@
 #include "core/rotate_axes.hpp"
 #include "geo/axes_rotation.hpp"
 #include "localization/identification/feature_distance.hpp"
+#include "localization/identification/map_landmark.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
@@ -23,8 +24,114 @@ namespace {
 using localization::SeenLandmark;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
+constexpr double kEndSd = 0.5;      // m of the ends of a seen piece of a line
 constexpr double kBeamSlack = 0.1;  // m by which a beam may end before a landmark that it shows
 constexpr double kMinCosine = 0.3;  // of the angle between the open side and the sensor
+
+/// The middle of the seen piece of a line in the frame of the sensor, and the unit vector along it.
+struct LinePiece {
+  Eigen::Vector2d middle, along;
+};
+
+LinePiece piece_of(const SeenLandmark& s, const localization::LineFeatures& line) {
+  const double angle = s.features.value[line.direction];
+  const Eigen::Vector2d normal(std::cos(angle), std::sin(angle)), along(-normal.y(), normal.x());
+  return {-*s.range * normal + (s.extent->from + s.extent->to) / 2 * along, along};
+}
+
+bool is_piece_of_line(const SeenLandmark& s, const TypeRegistry& types) {
+  if (!s.extent || !s.type || *s.type >= types.size()) return false;
+  const auto line = localization::line_features(types[*s.type]);
+  return line && s.features.known(line->direction);
+}
+
+/// The sighting of a line as one of a point: the middle of its piece, whose covariance is long along it.
+Observation observation_of_line(const SeenLandmark& s, const DriveLook& look, const TypeRegistry& types,
+                                const localization::FeatureScales& scales,
+                                const DriveMappingOptions& options) {
+  const localization::LineFeatures line = *localization::line_features(types[*s.type]);
+  const LinePiece piece = piece_of(s, line);
+  const double length = s.extent->to - s.extent->from, middle = (s.extent->from + s.extent->to) / 2;
+  const Eigen::Rotation2Dd turn(look.map_from_sensor.yaw);
+  const Eigen::Vector2d along = turn * piece.along, normal(along.y(), -along.x());
+  Observation o;
+  o.type = *s.type;
+  o.source = look.name;
+  o.position.xyz << look.map_from_sensor.at() + turn * piece.middle, 0;
+  o.covariance.setConstant(kNotMeasured);
+  o.covariance.topLeftCorner<2, 2>() =
+      (s.range_sd * s.range_sd + middle * middle * options.yaw_sd * options.yaw_sd +
+       options.position_sd * options.position_sd) *
+          normal * normal.transpose() +
+      length * length / 12 * along * along.transpose();
+  o.confidence = s.confidence;
+  const auto& features = types[o.type].features;
+  const localization::KnownFeatures mapped = localization::features_in_map(
+      scales, o.type, s.features, look.map_from_sensor.yaw, options.yaw_sd * options.yaw_sd);
+  o.features.resize(features.size());
+  for (std::size_t i = 0; i < std::min(features.size(), localization::kMaxFeatures); ++i)
+    if (mapped.known(i)) o.features[i] = {mapped.value[i], mapped.variance[i], 1};
+  o.features[line.length] = {length, kEndSd * kEndSd, 1};
+  return o;
+}
+
+/// Pieces of one line, as its extent from a point on it.
+struct LineUnion {
+  TypeId type;
+  Eigen::Vector2d on, sum_of_normals;
+  double from, to;
+  std::vector<Observation*> pieces;
+
+  Eigen::Vector2d normal() const { return sum_of_normals.normalized(); }
+  Eigen::Vector2d along() const { return {-normal().y(), normal().x()}; }
+};
+
+/// Looks see different pieces of a line. Moves each observation along its line to the middle of the union of
+/// the pieces, and gives it the length of the union: they are then observations of one landmark.
+void unite_lines(std::vector<Observation>& observations, const TypeRegistry& types) {
+  constexpr double kSameAngle = 0.15, kSameLine = 0.4, kSameGap = 1.5;  // rad, m, m
+  std::vector<LineUnion> unions;
+  for (Observation& o : observations) {
+    const auto line = localization::line_features(types[o.type]);
+    if (!line || o.features.size() <= line->length || !o.features[line->direction].known() ||
+        !o.features[line->length].known())
+      continue;
+    const double azimuth = o.features[line->direction].value, half = o.features[line->length].value / 2;
+    const Eigen::Vector2d normal(std::sin(azimuth), std::cos(azimuth)), at = o.position.xyz.head<2>();
+    LineUnion* best = nullptr;
+    double nearest = kSameLine;
+    for (LineUnion& u : unions) {
+      if (u.type != o.type || !(u.normal().dot(normal) > std::cos(kSameAngle))) continue;
+      const double off = std::abs(u.normal().dot(at - u.on)), s = u.along().dot(at - u.on);
+      if (s - half > u.to + kSameGap || s + half < u.from - kSameGap || !(off < nearest)) continue;
+      best = &u, nearest = off;
+    }
+    if (!best) best = &unions.emplace_back(LineUnion{o.type, at, Eigen::Vector2d::Zero(), -half, half, {}});
+    const double s = best->sum_of_normals.isZero() ? 0 : best->along().dot(at - best->on);
+    best->from = std::min(best->from, s - half), best->to = std::max(best->to, s + half);
+    best->sum_of_normals += normal;
+    best->pieces.push_back(&o);
+  }
+  for (const LineUnion& u : unions)
+    for (Observation* const o : u.pieces) {
+      const localization::LineFeatures line = *localization::line_features(types[u.type]);
+      const Eigen::Vector2d at = o->position.xyz.head<2>();
+      o->position.xyz.head<2>() += ((u.from + u.to) / 2 - u.along().dot(at - u.on)) * u.along();
+      o->features[line.length].value = u.to - u.from;
+    }
+}
+
+/// Restores what the mean of many pieces lost: the position of a line along itself is not known.
+void widen_line(Landmark& landmark, const LandmarkType& type) {
+  const auto line = localization::line_features(type);
+  if (!line || landmark.features.size() <= std::max(line->direction, line->length) ||
+      !landmark.features[line->direction].known() || !landmark.features[line->length].known())
+    return;
+  const double azimuth = landmark.features[line->direction].value,
+               length = landmark.features[line->length].value;
+  const Eigen::Vector2d along(-std::cos(azimuth), std::sin(azimuth));
+  landmark.covariance.topLeftCorner<2, 2>() += length * length / 12 * along * along.transpose();
+}
 
 Observation observation_of(const SeenLandmark& s, const DriveLook& look, const TypeRegistry& types,
                            const localization::FeatureScales& scales, const DriveMappingOptions& options) {
@@ -181,15 +288,19 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
     for (const SeenLandmark& s : looks[i].seen.sightings) {
       if (!s.is_valid()) continue;
       const bool is_typed = s.type && *s.type < types.size();
-      made.unplaced += !s.has_position();
+      const bool is_line = is_piece_of_line(s, types);
+      made.unplaced += !s.has_position() && !is_line;
       made.untyped += s.has_position() && !is_typed;
-      if (!s.has_position() || !is_typed) continue;
-      if (*s.range <= options.max_range)
+      if (!(s.has_position() && is_typed) && !is_line) continue;
+      if (*s.range <= options.max_range && is_line)
+        observations.push_back(observation_of_line(s, looks[i], types, scales, options));
+      else if (*s.range <= options.max_range)
         observations.push_back(observation_of(s, looks[i], types, scales, options));
       else
         ++made.too_far;
     }
   }
+  unite_lines(observations, types);
   pipeline::MergeRules rules;
   rules.weights = pipeline::FeatureWeights::precision;
   rules.min_sd = options.position_sd;
@@ -203,6 +314,7 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   for (Landmark& landmark : merged.landmarks)
     value_landmark(landmark, evidence[landmark.uid], looks, by_name, types[landmark.type]);
   made.landmarks = std::move(merged.landmarks);
+  for (Landmark& landmark : made.landmarks) widen_line(landmark, types[landmark.type]);
   made.evidence = std::move(merged.evidence);
   made.improbable = pipeline::remove_improbable(made.landmarks, made.evidence, types);
   if (frame.crs().kind() != CrsKind::local) place_in_crs(made, frame, types);

@@ -219,10 +219,13 @@ SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scen
       scenario.drive.seed >= 0 ? static_cast<std::uint64_t>(scenario.drive.seed) : seed;
   const testbed::Town town = scenario.street.on ? testbed::plan_street(scenario.street, seed, drive_seed)
                                                 : testbed::plan_hall(scenario.hall, seed, drive_seed);
-  const testbed::TownDrive drive =
-      testbed::drive_through(town, scenario.drive.on ? scenario.drive : testbed::town_settings(), drive_seed);
+  testbed::TownDrive drive;
   write_scene(request.folder, [&](const fs::path& folder) {
     make_folder(folder / "truth");
+    if (scenario.drive.on && scenario.drive.scanner.on) make_folder(folder / "points");
+    drive = testbed::drive_through(
+        town, scenario.drive.on ? scenario.drive : testbed::town_settings(), drive_seed,
+        [&](const std::string& name, const std::string& bytes) { write_file(folder / name, bytes); });
     write_file(folder / "log.jsonl", drive.log);
     write_file(folder / "truth/track.csv", drive.track);
     write_file(folder / "truth/landmarks.csv", testbed::town_table(town));
@@ -238,6 +241,9 @@ SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scen
 SimulateResult simulate(const SimulateRequest& request, const Callbacks& callbacks) {
   testbed::Scenario scenario = load_scenario(request, callbacks);
   const Crs crs = scenario_crs(scenario, request.scenario);
+  if (scenario.drive.scanner.on && !scenario.street.on && !scenario.hall.on)
+    throw Error(ErrorCode::usage, "drive.scanner is on: a 3-D scanner is simulated in streets and halls only",
+                request.scenario, "remove it, or add a section street or hall");
   if (scenario.street.on || scenario.hall.on) return simulate_town(request, scenario, callbacks);
   if (scenario.forest.on) return simulate_forest(request, scenario, crs, callbacks);
   const std::vector<testbed::Shot> shots = testbed::plan_shots(scenario);

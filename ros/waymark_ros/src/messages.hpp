@@ -33,7 +33,7 @@ struct Scan {
   Stamp stamp = 0;
   std::string frame = {};
   float angle_min = 0, angle_increment = 0, range_min = 0, range_max = 0;
-  std::vector<float> ranges = {};
+  std::vector<float> ranges = {}, intensities = {};
 };
 
 /// sensor_msgs/NavSatFix.

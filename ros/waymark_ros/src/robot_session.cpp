@@ -174,8 +174,9 @@ PoseReports RobotSession::take(const Scan& message) {
   if (!importers::is_level(*place))
     return drop("the scanner " + message.frame + " is tilted by more than 11 degrees"), PoseReports{};
   try {
-    localization::LaserScan scan = importers::laser_scan(
-        message.angle_min, message.angle_increment, message.range_min, message.range_max, message.ranges);
+    localization::LaserScan scan =
+        importers::laser_scan(message.angle_min, message.angle_increment, message.range_min,
+                              message.range_max, message.ranges, message.intensities);
     importers::mount(scan, *place);
     return wait("scan " + message.frame, message.stamp, std::move(scan));
   } catch (const std::runtime_error& problem) {

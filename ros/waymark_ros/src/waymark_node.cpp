@@ -171,7 +171,7 @@ class WaymarkNode final : public rclcpp::Node {
   }
   Scan from(const sensor_msgs::msg::LaserScan& m) const {
     return {stamp_of(m.header), m.header.frame_id, m.angle_min, m.angle_increment,
-            m.range_min,        m.range_max,       m.ranges};
+            m.range_min,        m.range_max,       m.ranges,    m.intensities};
   }
   Fix from(const sensor_msgs::msg::NavSatFix& m) const {
     return {stamp_of(m.header), m.header.frame_id,     m.status.status,           m.latitude,

@@ -232,6 +232,23 @@ TEST_F(BagSensors, CloudsOfAnyLayoutHoldTheSamePoints) {
             Eigen::Vector3f(-1, -300, -9000));
 }
 
+TEST_F(BagSensors, CloudsHoldTheIntensitiesOfTheirPoints) {
+  const auto intensities_of = [](const MadeCloud& cloud) {
+    const MadeMessage message = made_cloud(false, 1, {{1, 2, 3}, {kNone, 0, 0}, {4, 5, 6}}, cloud);
+    return importers::read_cloud(
+               {.topic = message.topic, .type = message.type, .received = 0, .bytes = message.bytes})
+        .intensities;
+  };
+  MadeCloud cloud{.fields = {{"intensity", 12, 4}, {"x", 0, 7}, {"y", 4, 7}, {"z", 8, 7}}, .point_step = 14};
+  EXPECT_EQ(intensities_of(cloud), (std::vector<float>{77, 77}));
+  cloud.fields[0].name = "reflectivity";
+  EXPECT_EQ(intensities_of(cloud), (std::vector<float>{77, 77}));
+  cloud.fields[0].name = "ring";
+  EXPECT_TRUE(intensities_of(cloud).empty());
+  cloud.fields.push_back({"intensity", 4, 9});  // of no known type
+  EXPECT_TRUE(intensities_of(cloud).empty());
+}
+
 TEST_F(BagSensors, CloudsThatCannotBeAreRefusedWithoutMemory) {
   const std::vector<std::array<double, 3>> points{{1, 2, 3}, {4, 5, 6}};
   const auto problem = [](const MadeMessage& message) -> std::string {

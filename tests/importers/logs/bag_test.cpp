@@ -187,12 +187,13 @@ TEST_F(Bag, OfSeveralFilesIsOneDrive) {
 
 TEST_F(Bag, ScansOfAScannerUpsideDownAreTurnedOver) {
   const RobotLog log = read_rosbag2({made_frame(false, "base_link", "laser", 1, 2, 0.5, true),
-                                     made_scan(false, 1, -0.5, 0.25, {1, 2, 3, 4})});
+                                     made_scan(false, 1, -0.5, 0.25, {1, 2, 3, 4}, "/scan", {5, 6, 7, 8})});
   ASSERT_EQ(log.events.size(), 1u);
   const auto& scan = std::get<LaserScan>(log.events[0].what);
   EXPECT_NEAR(scan.robot_from_sensor.yaw, 0.5, 1e-12);
   EXPECT_EQ(scan.first_angle, -0.25);  // the last beam was at +0.25 and is now the first, to the right
   EXPECT_EQ(scan.ranges, (std::vector<float>{4, 3, 2, 1}));
+  EXPECT_EQ(scan.intensities, (std::vector<float>{8, 7, 6, 5}));
 }
 
 TEST_F(Bag, ReadsTheTopicWithTheMostMessagesAndNamesTheOthers) {

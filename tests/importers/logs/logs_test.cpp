@@ -54,7 +54,7 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
 {"kind":"odometry","t":0,"v":1,"omega":0.1}
 
 {"kind":"sightings","t":0.5,"mount":{"x":0.3,"y":0},"items":[{"type":"rock","range":4,"bearing":-0.2,"landmark":"rk-1","features":{"radius":{"value":0.4,"sd":0.05}}},{"bearing":1}]}
-{"kind":"laser","t":0.6,"first_angle":-1.57,"angle_step":0.1,"ranges":[1,null,3]}
+{"kind":"laser","t":0.6,"first_angle":-1.57,"angle_step":0.1,"ranges":[1,null,3],"intensities":[9,null,7]}
 {"kind":"gnss","t":0.7,"x":1,"y":2,"sd":3}
 {"kind":"car","t":0.8,"v":1,"steering":0.1}
 {"kind":"step","t":0.9,"dx":1,"dy":0,"dyaw":0.1}
@@ -69,7 +69,22 @@ TEST_F(WaymarkLog, HoldsAllSensors) {
   EXPECT_EQ(seen.sightings[0].features.value[0], 0.4);
   EXPECT_DOUBLE_EQ(seen.sightings[0].features.variance[0], 0.0025);
   EXPECT_FALSE(seen.sightings[1].range);
+  EXPECT_THAT(std::get<LaserScan>(log.events[2].what).intensities, ElementsAre(9, 0, 7));
   EXPECT_THAT(log.remarks, ElementsAre(HasSubstr("1 records of the kind 'sonar'")));
+}
+
+TEST_F(WaymarkLog, ASightingOfALineHasARangeAndAnExtent) {
+  const RobotLog log = read(
+      R"({"kind":"sightings","t":0,"items":[{"type":"wall","range":4,"extent":[-2,3.5],"features":{"direction":1.5}}]})");
+  const SeenLandmark& s = std::get<SightingSet>(log.events.at(0).what).sightings.at(0);
+  EXPECT_EQ(s.extent->from, -2);
+  EXPECT_EQ(s.extent->to, 3.5);
+  const auto refused = [&](const std::string& item) {
+    return message_of([&] { read(R"({"kind":"sightings","t":0,"items":[{)" + item + "}]}"); });
+  };
+  EXPECT_THAT(refused(R"("range":4,"extent":[3,2])"), HasSubstr("the smaller one first"));
+  EXPECT_THAT(refused(R"("range":4,"extent":[3])"), HasSubstr("two numbers"));
+  EXPECT_THAT(refused(R"("range":4,"bearing":1,"extent":[3,4])"), HasSubstr("excludes"));
 }
 
 TEST_F(WaymarkLog, ASightingIsABearingARangeOrBoth) {

@@ -90,7 +90,7 @@ TEST_F(PointLog, ARecordNamesAFileBesideTheLog) {
 
 TEST_F(PointLog, PlyOfAllEncodingsGivesTheSamePoints) {
   const std::string head =
-      "element vertex 2\nproperty float x\nproperty uchar red\nproperty float y\n"
+      "element vertex 2\nproperty float x\nproperty uchar intensity\nproperty float y\n"
       "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
   const auto ascii = write("a.ply", "ply\nformat ascii 1.0\n" + head + "1 7 2 3\n-4 8 nan 6\n");
   const std::string red(1, 'r');
@@ -98,10 +98,22 @@ TEST_F(PointLog, PlyOfAllEncodingsGivesTheSamePoints) {
                                          floats({2, 3}) + floats({4}) + red + floats({5, 6}));
   const auto big = write("b.ply", "ply\nformat binary_big_endian 1.0\n" + head + floats({1}, true) + red +
                                       floats({2, 3}, true) + floats({4}, true) + red + floats({5, 6}, true));
-  EXPECT_THAT(read_point_file(ascii), testing::ElementsAre(Eigen::Vector3f(1, 2, 3)));
-  EXPECT_THAT(read_point_file(little),
+  EXPECT_THAT(read_point_file(ascii).points, testing::ElementsAre(Eigen::Vector3f(1, 2, 3)));
+  EXPECT_THAT(read_point_file(little).points,
               testing::ElementsAre(Eigen::Vector3f(1, 2, 3), Eigen::Vector3f(4, 5, 6)));
-  EXPECT_EQ(read_point_file(little), read_point_file(big));
+  EXPECT_EQ(read_point_file(little).points, read_point_file(big).points);
+  EXPECT_THAT(read_point_file(ascii).intensities, testing::ElementsAre(7))
+      << "the second point is not finite";
+  EXPECT_THAT(read_point_file(little).intensities, testing::ElementsAre('r', 'r'));
+  EXPECT_EQ(read_point_file(little).intensities, read_point_file(big).intensities);
+}
+
+TEST_F(PointLog, KittiScansHaveIntensities) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const auto scan = read_point_file(write("a.bin", floats({1, 2, 3, 0.25F, nan, 0, 0, 9, 4, 5, 6, 0.5F})));
+  EXPECT_THAT(scan.points, testing::ElementsAre(Eigen::Vector3f(1, 2, 3), Eigen::Vector3f(4, 5, 6)));
+  EXPECT_THAT(scan.intensities, testing::ElementsAre(0.25F, 0.5F));
+  EXPECT_TRUE(read_point_file(write("b.bin", floats({1, 2, 3, 0}))).intensities.empty()) << "none written";
 }
 
 TEST_F(PointLog, FaultsAreNamed) {

@@ -49,6 +49,35 @@ std::vector<DriveLook> made_looks() {
   return looks_of_drive(log, poses, make_laser_detector(all_types(), {.find = "walls"}), "made");
 }
 
+// A wall of 20 m along y = 8, of which each look sees another piece of 6 m.
+TEST(DriveLandmarks, PiecesOfALineAreOneWall) {
+  const TypeRegistry& types = all_types();
+  const TypeId wall = types.id("wall");
+  const LineFeatures line = *line_features(types[wall]);
+  std::vector<DriveLook> looks;
+  for (int i = 0; i <= 14; ++i) {
+    SeenLandmark s;
+    s.type = wall, s.range = 8 + (i % 2 ? 0.02 : -0.02), s.range_sd = 0.03;
+    s.extent = {-3, 3};
+    s.features.value[line.direction] = -kRight - 0.2, s.features.variance[line.direction] = 1e-4;
+    looks.push_back({.name = "look " + std::to_string(i),
+                     .map_from_sensor = {-7.0 + i, 0, 0.2},
+                     .seen = {{}, {s}},
+                     .scan = {}});
+  }
+  const auto made = landmarks_of_looks(looks, types, LocalFrame(Crs::local(), {}));
+  ASSERT_EQ(made.landmarks.size(), 1U);
+  EXPECT_EQ(made.unplaced, 0);
+  const Landmark& l = made.landmarks[0];
+  EXPECT_NEAR(l.position.xyz.x(), 0, 0.2);
+  EXPECT_NEAR(l.position.xyz.y(), 8, 0.02);
+  EXPECT_NEAR(std::abs(l.features[line.direction].value), std::numbers::pi, 0.01)
+      << "its normal points south";
+  EXPECT_NEAR(l.features[line.length].value, 20, 0.2);
+  EXPECT_GT(std::sqrt(l.covariance(0, 0)), 5) << "unknown along itself";
+  EXPECT_LT(std::sqrt(l.covariance(1, 1)), 0.05);
+}
+
 TEST(DriveLandmarks, AreTheCornersOfTheRoom) {
   const auto made = landmarks_of_looks(made_looks(), all_types(), LocalFrame(Crs::local(), {}));
   const TypeId corner = all_types().id("wall_corner");
