@@ -75,13 +75,14 @@ class RoomRow {
                                .at = at((door.from + door.to) / 2, 0),
                                .orientation = std::remainder(std::atan2(u_.x(), u_.y()), kHallHalfTurn),
                                .width = door.to - door.from});
-    // Ends of the wall at both jambs: who looks at the face has the wall on the side away from the door.
+    // Ends of the wall at both jambs. Who looks at the face from the corridor has `u` to the left, so the
+    // wall of the first jamb lies to the right.
     for (const bool second : {false, true})
       town_.landmarks.push_back({.type = "wall_end",
                                  .kind = {},
                                  .at = at(second ? door.to : door.from, 0),
                                  .direction = std::atan2(-v_.x(), -v_.y()),
-                                 .side = second ? -1.0 : 1.0});
+                                 .side = second ? 1.0 : -1.0});
     const bool open = doors_.bernoulli(model_.doors_open);
     const double swing = doors_.uniform(0.6, 1.7);  // rad
     if (!open)

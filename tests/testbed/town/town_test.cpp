@@ -62,6 +62,24 @@ TEST(Town, CornersAreEndsOfWallsAndLookIntoTheOpen) {
   }
 }
 
+TEST(Town, TheSideOfAnEndIsWhereTheViewerSeesItsWall) {
+  const Town town = plan_hall({.pillars = 0, .people = 0}, 9, 9);
+  int ends = 0;
+  for (const TownLandmark& l : town.landmarks) {
+    if (l.type != "wall_end") continue;
+    ++ends;
+    const Eigen::Vector2d open(std::sin(*l.direction), std::cos(*l.direction));
+    const Eigen::Vector2d left(open.y(), -open.x());  // of who looks against the normal of the face
+    const auto wall_at = [&](double aside) {          // whether a wall is met where the face would be
+      const auto range = town.cast(l.at + open + aside * left, -open, 0);
+      return range && std::abs(*range - 1) < 1e-6;
+    };
+    EXPECT_TRUE(wall_at(0.05 * *l.side)) << l.at.transpose();
+    EXPECT_FALSE(wall_at(-0.05 * *l.side)) << l.at.transpose();
+  }
+  EXPECT_GT(ends, 20);
+}
+
 TEST(Town, DrivesDifferInCarsAndDoorsOnly) {
   const auto landmarks = [](const Town& town) { return town_table(town); };
   const Town first = plan_street({}, 5, 1), second = plan_street({}, 5, 2);
