@@ -42,17 +42,19 @@ Crs map_crs(const CameraFile& file, const std::string& path, const CameraImport&
   return map;
 }
 
+/// Covariance of a pose in the grid. A block that the file leaves out, or states as 0, is unknown: it is that
+/// of the import.
 Covariance covariance_of(const CameraRecord& record, const CameraImport& import, const Eigen::Matrix3d& turn,
                          double scale) {
+  Covariance made = Covariance::Zero();
   if (record.covariance) {
     Covariance change = Covariance::Identity();
     change.bottomRightCorner<3, 3>() = scale * turn;
-    return change * *record.covariance * change.transpose();
+    made = change * *record.covariance * change.transpose();
   }
-  Covariance made = Covariance::Zero();
   const double rotation_sd = to_radians(import.rotation_sd).value, position_sd = import.position_sd.value;
-  made.diagonal().head<3>().setConstant(rotation_sd * rotation_sd);
-  made.diagonal().tail<3>().setConstant(position_sd * position_sd);
+  if (made.diagonal().head<3>().isZero(0)) made.diagonal().head<3>().setConstant(rotation_sd * rotation_sd);
+  if (made.diagonal().tail<3>().isZero(0)) made.diagonal().tail<3>().setConstant(position_sd * position_sd);
   return made;
 }
 

@@ -40,7 +40,7 @@ struct AlignImages {
   static StageSpec spec() {
     return {.name = "align_images",
             .summary = "Corrects the poses of images by the landmarks they share",
-            .version = 9,
+            .version = 10,
             .scope = Scope::map,
             .inputs = {dem, image_view, cleaned},
             .outputs = {observations, aligned_views}};
@@ -51,6 +51,14 @@ struct AlignImages {
         "{:.0f} % of {} views of an object are found again where another image shows the place "
         "({:.0f} % would be by chance)",
         100 * seen.raw, seen.expected, 100 * seen.chance);
+  }
+
+  // Standard deviations that poses get beyond those that they state.
+  static std::string added(const CheckedAlignment& checked) {
+    const std::string turn = fmt::format("{:.2g} deg", to_degrees(Radians{checked.added_rotation_sd}).value);
+    if (!(checked.added_position_sd > 0)) return turn;
+    return fmt::format("{:.2g} m", checked.added_position_sd) +
+           (checked.added_rotation_sd > 0 ? " and " + turn : "");
   }
 
   // What the user can correct, with the fraction found again then.
@@ -91,10 +99,12 @@ struct AlignImages {
         return;
       case Verdict::widened:
         unit.warn(
-            fmt::format("the poses are less certain than stated: {}; with {:.2g} m and {:.2g} deg added to "
-                        "their standard deviations {:.0f} % are{}",
-                        counted(checked.stated), checked.added_position_sd,
-                        to_degrees(Radians{checked.added_rotation_sd}).value, 100 * checked.aligned.raw,
+            fmt::format("{}: {}; with {}{} {:.0f} % are{}",
+                        checked.unstated ? "the camera file does not state how accurate all poses are"
+                                         : "the poses are less certain than stated",
+                        counted(checked.stated), added(checked),
+                        checked.unstated ? " for what is not stated" : " added to their standard deviations",
+                        100 * checked.aligned.raw,
                         checked.causes.empty() ? "" : "; without that " + advice(checked.causes)));
         return;
       case Verdict::doubtful:
@@ -112,6 +122,17 @@ struct AlignImages {
           ErrorCode::input, problem, "images",
           fmt::format("{}; wrong_geometry = warn makes a map of it all the same", advice(checked.causes)));
     unit.warn(fmt::format("{}; {}", problem, advice(checked.causes)));
+  }
+
+  // Warns of poses without a stated uncertainty where the images have too little in common to show it.
+  static void report_unstated(const std::vector<ImageView>& images, StageContext& unit) {
+    const auto count = std::ranges::count_if(images, lacks_uncertainty);
+    if (count > 0)
+      unit.warn(fmt::format(
+          "the poses of {} of {} images have no standard deviation, and the images have too few objects in "
+          "common to show it: the covariances of the map lack the errors of the poses; give position_sd and "
+          "rotation_sd",
+          count, images.size()));
   }
 
   // Warns where the relief in the images lies beside that of the DEM. Positions become uncertain by as much,
@@ -143,6 +164,7 @@ struct AlignImages {
       CheckedAlignment checked = align_and_check(aligned.observations, aligned.images, load_terrain(ground),
                                                  types, ground->geometry().where.crs, rules);
       report(checked, options, unit);
+      if (checked.verdict == CheckedAlignment::Verdict::unknown) report_unstated(aligned.images, unit);
       aligned = std::move(checked.alignment);
     }
     if (aligned.too_many)

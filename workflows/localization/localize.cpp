@@ -19,6 +19,7 @@
 #include "localization/robot_log.hpp"
 #include "workflows/localization/drive_layers.hpp"
 #include "workflows/localization/localize_method.hpp"
+#include "workflows/localization/log_without_landmarks.hpp"
 #include "workflows/localization/mirrored_log.hpp"
 #include "workflows/parse_number.hpp"
 #include "workflows/registries.hpp"
@@ -220,6 +221,13 @@ std::string find_mirrored(const LocalizeTask& task, const OpenedMap& map, Locali
                         run(mirror_log(start, MirroredPart::robot)));
 }
 
+/// Warns of scans without usable ranges, and of a track that saw no landmark.
+void warn_if_blind(const localization::RobotLog& log, const localization::Track& track,
+                   const LocalizeRequest& request, const Callbacks& callbacks) {
+  for (const std::string& fault : {unusable_ranges_warning(log), dead_reckoning_warning(log, track)})
+    if (!fault.empty()) callbacks.warning(fault + ": " + request.log);
+}
+
 const MethodTable& method_table() {
   static const MethodTable table = [] {
     MethodTable made;
@@ -295,6 +303,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   LocalizeResult result{.track = method.run(task),
                         .settings = options_as_text(option_table(options)),
                         .settings_json = task.settings_json};
+  if (method.name() != "odometry") warn_if_blind(log, result.track, request, callbacks);
   // SLAM without a start maps the mirrored world as well as the true one.
   const bool can_be_mirrored = !method.updates_map() || method.start() == StartPolicy::required;
   if (task.start && request.map != "none" && can_be_mirrored && fits_badly(result.track)) {

@@ -55,8 +55,10 @@ struct Fit {
     mean_nis = sum / rows;
   }
 
+  // On made streets and halls a right log matches 31 to 64 % of its sightings with the map of another drive,
+  // since cars, people and doors differ. Exchanged, it matches at most 18 %, and half of what is right.
   bool is_much_better_than(const Fit& other) const {
-    return 5 * matched >= 4 * sightings && matched >= 2 * other.matched && lost <= other.lost;
+    return 4 * matched >= sightings && matched >= 2 * other.matched && lost <= other.lost;
   }
 };
 

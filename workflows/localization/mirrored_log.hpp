@@ -21,7 +21,7 @@ localization::RobotLog beginning_of(const localization::RobotLog& log);
 /// less than half are matched, or a tenth of the rows is lost.
 bool fits_badly(const localization::Track& track);
 
-/// Returns a warning if the better track of a mirrored log fits much better: four fifths of its sightings are
+/// Returns a warning if the better track of a mirrored log fits much better: a quarter of its sightings is
 /// matched, at least twice as many as `as_written`, and no more rows are lost. Empty otherwise. The mean NIS
 /// decides whether the motion is mirrored, too, if it differs by a tenth.
 std::string mirror_warning(const localization::Track& as_written, const localization::Track& with_sensors,

@@ -68,8 +68,12 @@ class BundleAdjustment {
       prior.diagonal().tail<3>() += Eigen::Vector3d::Constant(1e-8);
       stated_.push_back(prior);
       if (image.view) {
-        prior.diagonal().head<3>().array() += rules.added_rotation_sd * rules.added_rotation_sd;
-        prior.diagonal().tail<3>().array() += rules.added_position_sd * rules.added_position_sd;
+        const Matrix6& given = image.view->covariance;
+        const bool everywhere = !rules.added_where_unstated;
+        if (everywhere || given.diagonal().head<3>().isZero(0))
+          prior.diagonal().head<3>().array() += rules.added_rotation_sd * rules.added_rotation_sd;
+        if (everywhere || given.diagonal().tail<3>().isZero(0))
+          prior.diagonal().tail<3>().array() += rules.added_position_sd * rules.added_position_sd;
       }
       prior_.block<6, 6>(6 * i, 6 * i) = prior;
     }

@@ -16,9 +16,10 @@ struct AlignmentRules {
   int solutions = 4;  ///< reweighted solutions per round
   /// Upper limit of the independent pairs of an image, since neighbouring pairs share errors of the DEM.
   double independent_pairs = 100;
-  int max_images = 250;          ///< more are not aligned: 6 n unknowns are solved densely
-  double added_position_sd = 0;  ///< metres: of the centres, beyond what the poses state
-  double added_rotation_sd = 0;  ///< radians: of the rotations, beyond what the poses state
+  int max_images = 250;               ///< more are not aligned: 6 n unknowns are solved densely
+  double added_position_sd = 0;       ///< metres: of the centres, beyond what the poses state
+  double added_rotation_sd = 0;       ///< radians: of the rotations, beyond what the poses state
+  bool added_where_unstated = false;  ///< only to centres and to rotations whose covariance is 0
 };
 
 struct Alignment {

@@ -33,21 +33,31 @@ ViewScale view_scale(const std::vector<ImageView>& images) {
 struct Attempt {
   Alignment alignment;
   Repetition found;
-  double position_sd = 0;  // added, metres
+  double position_sd = 0, rotation_sd = 0;  // added, metres and radians
+  bool unstated = false;                    // only where the poses state none
 };
 
-bool states_no_uncertainty(const std::vector<ImageView>& images) {
-  return std::ranges::all_of(
-      images, [](const ImageView& image) { return !image.view || image.view->covariance.trace() == 0; });
+bool has_no_position_sd(const ImageView& image) {
+  return image.view && image.view->covariance.diagonal().tail<3>().isZero(0);
 }
 
-double root_mean_square(const std::vector<double>& values) {
-  double squares = 0;
-  for (const double value : values) squares += value * value;
-  return std::sqrt(squares / static_cast<double>(std::max<std::size_t>(values.size(), 1)));
+bool has_no_rotation_sd(const ImageView& image) {
+  return image.view && image.view->covariance.diagonal().head<3>().isZero(0);
+}
+
+/// Root mean square shift, metres, of the images whose pose lacks an uncertainty.
+double shift_of_unstated(const std::vector<ImageView>& images, const std::vector<double>& shifts) {
+  double squares = 0, count = 0;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (lacks_uncertainty(images[i])) squares += shifts[i] * shifts[i], ++count;
+  return std::sqrt(squares / std::max(count, 1.0));
 }
 
 }  // namespace
+
+bool lacks_uncertainty(const ImageView& image) {
+  return has_no_position_sd(image) || has_no_rotation_sd(image);
+}
 
 CheckedAlignment align_and_check(const std::vector<Observation>& observations,
                                  const std::vector<ImageView>& images, const Terrain& terrain,
@@ -64,33 +74,37 @@ CheckedAlignment align_and_check(const std::vector<Observation>& observations,
   made.verdict = Verdict::sound;
 
   const ViewScale scale = view_scale(images);
-  const auto widen = [&](double position_sd) {
+  const auto widen = [&](double position_sd, bool unstated) {
     AlignmentRules wider = rules.alignment;
     wider.added_position_sd = position_sd;
     wider.added_rotation_sd = position_sd / scale.distance;
+    wider.added_where_unstated = unstated;
     return align_images(observations, images, terrain, types, crs, wider);
   };
   const auto keep = [&](Attempt attempt) {
     made.alignment = std::move(attempt.alignment);
     made.aligned = attempt.found;
     made.added_position_sd = attempt.position_sd;
-    made.added_rotation_sd = attempt.position_sd / scale.distance;
+    made.added_rotation_sd = attempt.rotation_sd;
+    made.unstated = attempt.unstated;
     made.verdict = Verdict::widened;
   };
   if (!(scale.gsd > 0)) return made;
-  if (states_no_uncertainty(images)) {
+  const bool no_positions = std::ranges::any_of(images, has_no_position_sd),
+             no_rotations = std::ranges::any_of(images, has_no_rotation_sd);
+  if (no_positions || no_rotations) {
     // Unknown is not zero: the corrections of poses left free show how large their errors are.
-    const double position_sd = root_mean_square(widen(kFreeGsds * scale.gsd).shifts);
-    Alignment alignment = widen(position_sd);
-    const Repetition found = measure(alignment);
-    if (position_sd > kExactGsds * scale.gsd && found.found() > made.stated.found() - rules.step_gain)
-      keep({std::move(alignment), found, position_sd});
+    const double sd = shift_of_unstated(images, widen(kFreeGsds * scale.gsd, true).shifts);
+    Attempt attempt{widen(sd, true), {}, no_positions ? sd : 0, no_rotations ? sd / scale.distance : 0, true};
+    attempt.found = measure(attempt.alignment);
+    if (sd > kExactGsds * scale.gsd && attempt.found.found() > made.stated.found() - rules.step_gain)
+      keep(std::move(attempt));
   }
   if (made.aligned.found() < rules.certain) {
     std::optional<Attempt> best;
     for (int k = 0; k < rules.widenings; ++k) {
       const double position_sd = scale.gsd * std::exp2(k);
-      Attempt attempt{widen(position_sd), {}, position_sd};
+      Attempt attempt{widen(position_sd, false), {}, position_sd, position_sd / scale.distance};
       attempt.found = measure(attempt.alignment);
       if (attempt.found.expected < rules.min_expected) continue;
       if (!best || attempt.found.found() > best->found.found() + rules.step_gain) best = std::move(attempt);

@@ -36,14 +36,22 @@ struct CheckedAlignment {
   Verdict verdict = Verdict::unknown;
   double added_position_sd = 0;             ///< metres
   double added_rotation_sd = 0;             ///< radians
+  bool unstated = false;                    ///< they are added only where the poses state no uncertainty
   std::vector<CommonGeometryError> causes;  ///< errors that explain what is not found again, the best first
 };
 
+/// Returns whether the covariance of the centre or of the rotation of a posed image is 0, which means
+/// unknown.
+bool lacks_uncertainty(const ImageView& image);
+
 /// Aligns images and tests the result by how many objects are found again in other images.
-/// Where too few are, the poses are taken to be less certain than stated: their standard deviations grow from
-/// one ground sample distance upwards, and the attempt with the most objects found again is kept.
-/// Where one error common to all images explains as much, it is named; where fewer than `sound` are found
-/// again without it, no correction of poses is trusted. Deterministic.
+/// - A covariance of 0 of a centre or a rotation is unknown: corrections of poses left free show its size.
+/// - Where too few are found again, the poses are taken to be less certain than stated: their standard
+/// deviations
+///   grow from one ground sample distance upwards. The attempt with the most objects found again is kept.
+/// - Where one error common to all images explains as much, it is named; where fewer than `sound` are found
+///   again without it, no correction of poses is trusted.
+/// Deterministic.
 CheckedAlignment align_and_check(const std::vector<Observation>& observations,
                                  const std::vector<ImageView>& images, const Terrain& terrain,
                                  const TypeRegistry& types, const Crs& crs,

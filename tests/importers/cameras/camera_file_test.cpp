@@ -62,6 +62,21 @@ TEST(CameraFile, IsReadAsDocumented) {
   EXPECT_LT((looks_along(view) - Eigen::Vector3d(0, 0, -1)).norm(), 1e-6);
 }
 
+TEST(CameraFile, ADeviationThatIsAbsentOr0IsThatOfTheImport) {
+  const CameraImport import{.rotation_sd = Degrees{1}, .position_sd = Meters{2}};
+  json file = sample();
+  for (const bool is_zero : {false, true}) {
+    if (is_zero)
+      file["images"][0]["position_sd"] = 0;
+    else
+      file["images"][0].erase("position_sd");
+    const PosedCamera view = *read(file, import).images[0].view;
+    EXPECT_NEAR(view.covariance(0, 0), std::pow(0.05 * kRadiansPerDegree, 2), 1e-18);
+    EXPECT_NEAR(view.covariance(5, 5), 4, 1e-12);
+    EXPECT_EQ(read(file).images[0].view->covariance(5, 5), 0);
+  }
+}
+
 TEST(CameraFile, QuaternionAndRotationAreTheSame) {
   json file = sample();
   file["images"][0].erase("rotation");

@@ -34,8 +34,9 @@ class MirroredLog : public testing::Test {
     import_landmarks(import);
   }
 
-  /// Warnings of a drive; `bearing` and `turn` are 1, or -1 if they are exchanged.
-  std::string warnings(double bearing, double turn) {
+  /// Warnings of a drive; `bearing` and `turn` are 1, or -1 if they are exchanged. Each set has sightings of
+  /// `unmapped` further poles, which move.
+  std::string warnings(double bearing, double turn, int unmapped = 0) {
     Random random(5);
     std::string log = R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0,"sd":0.1,"yaw_sd":0.02}})";
     for (int k = 0; k < 80; ++k) {
@@ -52,6 +53,12 @@ class MirroredLog : public testing::Test {
                          {"bearing", bearing * angle},
                          {"bearing_sd", 0.01}});
       }
+      for (int i = 0; i < unmapped; ++i)
+        items.push_back({{"type", "pole"},
+                         {"range", random.uniform(2, 12)},
+                         {"range_sd", 0.03},
+                         {"bearing", random.uniform(-3, 3)},
+                         {"bearing_sd", 0.01}});
       log += "\n" + json{{"kind", "sightings"}, {"t", t}, {"items", items}}.dump();
     }
     write_file(file("log.jsonl"), log + "\n");
@@ -75,6 +82,13 @@ TEST_F(MirroredLog, IsNamedAndAGoodOneIsNot) {
   EXPECT_EQ(warnings(1, 1), "");
   EXPECT_THAT(warnings(-1, 1), HasSubstr("exchanged in its bearings and beams: 451 of 451"));
   EXPECT_THAT(warnings(-1, -1), HasSubstr("exchanged in its bearings and beams and its motion: 451 of 451"));
+}
+
+TEST_F(MirroredLog, IsNamedAmongObjectsThatTheMapLacks) {
+  EXPECT_EQ(warnings(1, 1, 6), "");
+  EXPECT_THAT(warnings(-1, 1, 6), HasSubstr("exchanged in its bearings and beams"));
+  EXPECT_THAT(warnings(-1, -1, 6),
+              testing::AllOf(HasSubstr("exchanged in its bearings and beams"), HasSubstr("its motion")));
 }
 
 TEST(MirrorLog, TwiceIsTheSame) {

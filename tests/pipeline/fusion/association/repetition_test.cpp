@@ -127,6 +127,37 @@ TEST(CheckedAlignment, EstimatesAnUncertaintyThatIsNotStated) {
   EXPECT_LT(checked.added_position_sd, 1.5);
 }
 
+TEST(CheckedAlignment, APositionWithoutDeviationIsUnknownBesideAKnownRotation) {
+  MadeLanding made = landing_with_poses(37, 0.4, 0.05);
+  for (ImageView& image : made.images) image.view->covariance.bottomRightCorner<3, 3>().setZero();
+  const CheckedAlignment checked =
+      align_and_check(made.observations, made.images, made.dem, made.types, Crs::local());
+  EXPECT_EQ(checked.verdict, CheckedAlignment::Verdict::widened);
+  EXPECT_TRUE(checked.unstated);
+  EXPECT_GT(checked.added_position_sd, 0.1);
+  EXPECT_LT(checked.added_position_sd, 1.5);
+  EXPECT_EQ(checked.added_rotation_sd, 0);
+}
+
+TEST(CheckedAlignment, PosesThatStateTheirDeviationsKeepThem) {
+  MadeLanding made = landing_with_poses(34, 0.15, 0.15);
+  ASSERT_GT(made.images.size(), 4U);
+  for (ImageView& image : made.images)
+    image.view->covariance.topLeftCorner<3, 3>().diagonal().setConstant(1e-8);
+  made.images[2].view->covariance.setZero();
+  AlignmentRules rules;
+  rules.added_position_sd = 2;
+  rules.added_where_unstated = true;
+  const Alignment aligned =
+      align_images(made.observations, made.images, made.dem, made.types, Crs::local(), rules);
+  // Only the third image may move by more than its stated deviation allows.
+  for (std::size_t i = 0; i < made.images.size(); ++i) {
+    const Eigen::Vector3d step = aligned.images[i].view->centre().xyz - made.images[i].view->centre().xyz;
+    EXPECT_LT(step.norm(), i == 2 ? 8 : 0.8) << i;
+  }
+  EXPECT_GT(aligned.images[2].view->covariance(3, 3), 0);
+}
+
 TEST(CheckedAlignment, NoPoseMakesScatteredObjectsFit) {
   MadeLanding made = landing_with_poses(38, 0.1, 0.1);
   Random random(1, "scatter");
