@@ -7,6 +7,32 @@
 
 namespace waymark::inline geo {
 
+Grid<float> CanopySource::ground(const Window& window) const {
+  const GridGeometry& grid = geometry();
+  Grid<float> ground(window.columns, window.rows, std::nanf(""));
+  for (std::int64_t r = std::max<std::int64_t>(0, window.row); r < std::min(window.end_row(), grid.rows); ++r)
+    for (std::int64_t c = std::max<std::int64_t>(0, window.column);
+         c < std::min(window.end_column(), grid.columns); ++c)
+      ground(c - window.column, r - window.row) = static_cast<float>(ground_elevation(c, r));
+  return ground;
+}
+
+void CanopySource::visit_surface(const Window& window,
+                                 const std::function<void(const SurfacePoint&)>& use) const {
+  const Georeference& where = geometry().where;
+  const double unit = where.crs.metres_per_unit();
+  const Grid<float> heights = read(window), below = ground(window);
+  for (std::int64_t r = 0; r < window.rows; ++r)
+    for (std::int64_t c = 0; c < window.columns; ++c) {
+      if (heights(c, r) == kNoCanopy) continue;
+      const double zero = std::isnan(below(c, r)) ? 0 : static_cast<double>(below(c, r));
+      use({.x = static_cast<double>(window.column + c) * where.dx * unit,
+           .y = static_cast<double>(window.row + r) * where.dy * unit,
+           .z = zero + static_cast<double>(heights(c, r)),
+           .height = heights(c, r)});
+    }
+}
+
 GridGeometry common_grid(const Canopies& canopies) {
   if (canopies.empty()) throw std::logic_error("common_grid: no canopy");
   GridGeometry common = canopies[0]->geometry();

@@ -50,6 +50,11 @@ class RasterCanopy final : public ImportedCanopy {
     return static_cast<double>(terrain_.at({column, row, 1, 1})(0, 0));
   }
 
+  Grid<float> ground(const Window& window) const override {
+    if (terrain_.is_open()) return terrain_.at(window);
+    return Grid<float>(window.columns, window.rows, std::nanf(""));
+  }
+
   Grid<std::uint8_t> forest_types(const Window& window) const override {
     if (!types_) return {};
     Grid<std::uint8_t> types(window.columns, window.rows, 0);

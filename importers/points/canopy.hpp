@@ -13,6 +13,7 @@ namespace waymark::importers {
 struct CanopyImport {
   std::vector<std::string> chm = {}, dsm = {}, dtm = {}, las = {};
   double resolution = 0;         ///< of a canopy from points, metres; 0: by their density
+  double ground_square = 20;     ///< GroundRules::square where no point is classified as ground, metres
   std::string forest_type = {};  ///< raster of ForestType values on any grid; empty: none
   std::string crs = {};          ///< as in DemImport
   std::string area = {};         ///< file of polygons: the area of interest; empty: all

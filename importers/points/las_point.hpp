@@ -10,6 +10,7 @@ struct LasPoint {
   std::uint8_t classification = 0;  ///< 2 ground; 7 and 18 noise
   std::uint8_t return_number = 1;   ///< from 1; 0: not numbered
   bool withheld = false;
+  std::uint8_t return_count = 0;  ///< of its pulse; 0: not stated
   bool operator==(const LasPoint&) const = default;
 };
 

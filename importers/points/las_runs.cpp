@@ -73,6 +73,7 @@ LasPoint las_point(const unsigned char* record, const LasHeader& header) {
   point.z = header.offset[2] + header.scale[2] * raw[2];
   const bool wide = header.point_format >= 6;  // wider return numbers and classes
   point.return_number = static_cast<std::uint8_t>(record[14] & (wide ? 0x0F : 0x07));
+  point.return_count = static_cast<std::uint8_t>(wide ? record[14] >> 4 : record[14] >> 3 & 0x07);
   point.classification = static_cast<std::uint8_t>(wide ? record[16] : record[15] & 0x1F);
   point.withheld = (record[15] & (wide ? 0x04 : 0x80)) != 0;
   return point;

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
 constexpr double kHalo = 20;          // metres of points around a block
-constexpr double kGroundHalo = 60;    // metres of points around a block for finding the ground
+constexpr double kGroundHalo = 3;     // squares of the ground filter around a block for finding the ground
 constexpr double kMinDensity = 0.25;  // returns per m2; below, ground cannot be recognised by its shape
 constexpr std::size_t kKeptBlocks = 256;
 // Metres between the ground of the laser and a terrain model: more than the errors of both; surely another
@@ -115,7 +115,76 @@ class PointCanopy final : public ImportedCanopy {
         block_at(column / kBlock, row / kBlock)->ground(column % kBlock, row % kBlock));
   }
 
+  Grid<float> ground(const Window& window) const override {
+    if (terrain_.is_open()) return terrain_.at(window);
+    Grid<float> ground(window.columns, window.rows, std::nanf(""));
+    const std::int64_t first_row = std::max<std::int64_t>(0, window.row),
+                       end_row = std::min(window.end_row(), grid_.rows),
+                       first_column = std::max<std::int64_t>(0, window.column),
+                       end_column = std::min(window.end_column(), grid_.columns);
+    for (std::int64_t block_row = first_row / kBlock; block_row * kBlock < end_row; ++block_row)
+      for (std::int64_t block_column = first_column / kBlock; block_column * kBlock < end_column;
+           ++block_column) {
+        const auto block = ground_at(block_column, block_row);
+        for (std::int64_t r = std::max(first_row, block_row * kBlock);
+             r < std::min(end_row, (block_row + 1) * kBlock); ++r)
+          for (std::int64_t c = std::max(first_column, block_column * kBlock);
+               c < std::min(end_column, (block_column + 1) * kBlock); ++c)
+            ground(c - window.column, r - window.row) =
+                (*block)(c - block_column * kBlock, r - block_row * kBlock);
+      }
+    return ground;
+  }
+
+  void visit_surface(const Window& window,
+                     const std::function<void(const SurfacePoint&)>& use) const override {
+    const Window around{std::max<std::int64_t>(0, window.column - 1),
+                        std::max<std::int64_t>(0, window.row - 1), 0, 0};
+    const std::int64_t columns = std::min(window.end_column() + 1, grid_.columns) - around.column,
+                       rows = std::min(window.end_row() + 1, grid_.rows) - around.row;
+    if (columns <= 0 || rows <= 0) return;
+    const Grid<float> below = ground({around.column, around.row, columns, rows});
+    const Georeference& where = grid_.where;
+    const double cell_x = where.dx * unit_, cell_y = -where.dy * unit_;
+    const auto edge = [](std::int64_t k) { return static_cast<double>(k) - 0.6; };
+    catalogue_.visit({where.x(edge(window.column)), where.y(edge(window.end_row() + 1)),
+                      where.x(edge(window.end_column() + 1)), where.y(edge(window.row))},
+                     [&](const LasPoint& p) {
+                       const double x = (p.x - where.x0) * unit_, y = (p.y - where.y0) * unit_;
+                       const double column = x / cell_x, row = -y / cell_y;
+                       if (!window.contains(static_cast<std::int64_t>(std::floor(column + 0.5)),
+                                            static_cast<std::int64_t>(std::floor(row + 0.5))))
+                         return;
+                       const double z = p.z * height_unit_;
+                       const double height =
+                           z - between_cells(below, column - static_cast<double>(around.column),
+                                             row - static_cast<double>(around.row));
+                       if (std::isnan(height)) return;
+                       const bool numbered = p.return_number > 0;
+                       use({.x = x,
+                            .y = y,
+                            .z = z,
+                            .height = static_cast<float>(height),
+                            .number = p.return_number,
+                            .of = numbered ? p.return_count : std::uint8_t{0},
+                            .classification = p.classification});
+                     });
+  }
+
+  double point_density() const override { return 1 / (spacing_ * spacing_); }
+
  private:
+  /// Returns the bilinear value between cells, or that of the nearest ones at the edges.
+  static double between_cells(const Grid<float>& values, double column, double row) {
+    const double c = std::clamp(column, 0.0, static_cast<double>(values.columns() - 1)),
+                 r = std::clamp(row, 0.0, static_cast<double>(values.rows() - 1));
+    const auto i = static_cast<std::int64_t>(c), j = static_cast<std::int64_t>(r);
+    const std::int64_t i2 = std::min(i + 1, values.columns() - 1), j2 = std::min(j + 1, values.rows() - 1);
+    const double u = c - static_cast<double>(i), v = r - static_cast<double>(j);
+    const auto at = [&](std::int64_t k, std::int64_t l) { return static_cast<double>(values(k, l)); };
+    return (1 - v) * ((1 - u) * at(i, j) + u * at(i2, j)) + v * ((1 - u) * at(i, j2) + u * at(i2, j2));
+  }
+
   void check_points() {
     const auto out = catalogue_.excluded();
     if (catalogue_.points() == 0)
@@ -270,14 +339,56 @@ class PointCanopy final : public ImportedCanopy {
     return made;
   }
 
+  std::shared_ptr<const Grid<float>> ground_at(std::int64_t column, std::int64_t row) const {
+    const std::int64_t key = row * (1 << 24) + column;
+    {
+      const std::scoped_lock lock(mutex_);
+      for (auto it = grounds_.begin(); it != grounds_.end(); ++it)
+        if (it->first == key) {
+          grounds_.splice(grounds_.begin(), grounds_, it);
+          return it->second;
+        }
+    }
+    auto made = std::make_shared<const Grid<float>>(compute_ground(column, row));
+    const std::scoped_lock lock(mutex_);
+    grounds_.emplace_front(key, made);
+    if (grounds_.size() > kKeptBlocks) grounds_.pop_back();
+    return made;
+  }
+
+  /// Returns the ground of a block, as compute_block() has it.
+  Grid<float> compute_ground(std::int64_t column, std::int64_t row) const {
+    const BlockPoints points = read_block(column, row, false);
+    return pipeline::ground_grid(points.all.ground, points.frame);
+  }
+
   pipeline::CanopyBlock compute_block(std::int64_t column, std::int64_t row) const {
+    BlockPoints points = read_block(column, row, true);
+    if (terrain_.is_open()) {
+      constexpr std::int64_t margin = pipeline::kTerrainMargin;
+      const Grid<float> terrain = terrain_.at(
+          {column * kBlock - margin, row * kBlock - margin, kBlock + 2 * margin, kBlock + 2 * margin});
+      return pipeline::canopy_block(points.all.surface, terrain, points.frame, spacing_);
+    }
+    return pipeline::canopy_block(points.all, points.frame, spacing_);
+  }
+
+  struct BlockPoints {
+    pipeline::CellFrame frame;
+    pipeline::LaserPoints all;
+  };
+
+  /// Reads the points in and around a block and finds those of the ground; without `surface` those only.
+  BlockPoints read_block(std::int64_t column, std::int64_t row, bool surface) const {
     const Georeference& where = grid_.where;
     const double first = static_cast<double>(column * kBlock), top = static_cast<double>(row * kBlock);
-    const pipeline::CellFrame frame{
+    BlockPoints read;
+    read.frame = {
         where.x(first) * unit_, where.y(top) * unit_, where.dx * unit_, where.dy * unit_, kBlock, kBlock};
     const bool classified = terrain_.is_open() || catalogue_.ground_points() > 0;
-    const double around = (classified ? kHalo : kGroundHalo) / unit_, last = static_cast<double>(kBlock);
-    pipeline::LaserPoints points;
+    const double around = (classified ? kHalo : kGroundHalo * import_.ground_square) / unit_,
+                 last = static_cast<double>(kBlock);
+    pipeline::LaserPoints& points = read.all;
     const std::size_t max_points =
         static_cast<std::size_t>(std::max<std::int64_t>(1, kMemoryTimes * import_.memory_bytes) /
                                  std::int64_t{sizeof(Eigen::Vector3d)});
@@ -287,18 +398,16 @@ class PointCanopy final : public ImportedCanopy {
                        const Eigen::Vector3d at(p.x * unit_, p.y * unit_, p.z * height_unit_);
                        if (!terrain_.is_open() && (p.classification == 2 || !classified))
                          points.ground.push_back(at);
-                       if (is_first(p)) points.surface.push_back(at);
+                       if (surface && is_first(p)) points.surface.push_back(at);
                        if (points.ground.size() + points.surface.size() > max_points)
                          refuse_density(column, row);
                      });
-    if (terrain_.is_open()) {
-      constexpr std::int64_t margin = pipeline::kTerrainMargin;
-      const Grid<float> terrain = terrain_.at(
-          {column * kBlock - margin, row * kBlock - margin, kBlock + 2 * margin, kBlock + 2 * margin});
-      return pipeline::canopy_block(points.surface, terrain, frame, spacing_);
+    if (!classified) {
+      pipeline::GroundRules rules;
+      rules.square = import_.ground_square;
+      points.ground = pipeline::ground_returns(points.ground, rules);
     }
-    if (!classified) points.ground = pipeline::ground_returns(points.ground);
-    return pipeline::canopy_block(points, frame, spacing_);
+    return read;
   }
 
   /// Throws: the points of a block do not fit into the memory.
@@ -325,6 +434,7 @@ class PointCanopy final : public ImportedCanopy {
   mutable std::mutex mutex_;
   mutable std::list<std::pair<std::int64_t, std::shared_ptr<const pipeline::CanopyBlock>>>
       blocks_;  // most recently used first
+  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const Grid<float>>>> grounds_;  // likewise
 };
 
 }  // namespace

@@ -26,7 +26,7 @@ double wrapped(double value, Scale scale) {
   return is_angle(scale) ? difference(value, 0, scale) : value;
 }
 
-Eigen::Matrix3d covariance_of(double sd, const Shape& shape) {
+Eigen::Matrix3d covariance_of(double sd, const DerivedShape& shape) {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Constant(std::nan(""));
   if (std::isnan(sd)) return covariance;
   const double along = shape.along_sd * shape.along_sd;
@@ -91,7 +91,7 @@ BoundRule bind_rule(const ImportRule& rule, const TypeRegistry& types, std::size
 }
 
 Landmark landmark_of_shape(const MapElement& element, const BoundRule& rule, const LandmarkType& type,
-                           const Shape& shape) {
+                           const DerivedShape& shape) {
   std::map<std::string, std::string> tags = element.tags;
   for (const auto& [name, value] : shape.values) tags["geom_" + name] = fmt::format("{}", value);
   Landmark landmark;

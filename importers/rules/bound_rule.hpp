@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 #include "core/landmark.hpp"
+#include "geo/outline_shapes.hpp"
 #include "importers/rules/import_rules.hpp"
-#include "importers/rules/outline_shapes.hpp"
 #include "importers/rules/rule_expression.hpp"
 #include "landmarks/landmark_type.hpp"
 namespace waymark::importers {
@@ -27,6 +27,6 @@ BoundRule bind_rule(const ImportRule& rule, const TypeRegistry& types, std::size
 
 /// Returns the landmark that a rule makes of a shape of an element, without its position.
 Landmark landmark_of_shape(const MapElement& element, const BoundRule& rule, const LandmarkType& type,
-                           const Shape& shape);
+                           const DerivedShape& shape);
 
 }  // namespace waymark::importers

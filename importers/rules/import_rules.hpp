@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 #include <vector>
+#include "geo/outline_shapes.hpp"
 #include "importers/rules/map_element.hpp"
-#include "importers/rules/outline_shapes.hpp"
 namespace waymark::importers {
 
 /// What a tag of an element must be.

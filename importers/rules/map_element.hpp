@@ -8,22 +8,16 @@
 #include <string>
 #include <vector>
 #include "geo/crs.hpp"
+#include "geo/geometry_part.hpp"
 #include "importers/rules/drawing_unit.hpp"
 namespace waymark::importers {
-
-/// Piece of a geometry in the coordinates of its file.
-struct GeometryPart {
-  enum class Kind { point, line, outline, hole };
-  Kind kind = Kind::point;
-  std::vector<Eigen::Vector3d> vertices;  ///< of an outline or a hole without a repetition of the first
-};
 
 /// Thing of a GIS layer: a node or way of OSM, a feature of a shapefile, an entity of a drawing.
 struct MapElement {
   std::string layer;
   std::int64_t number = 0;                  ///< of the feature
   std::map<std::string, std::string> tags;  ///< tags and columns that have a value
-  std::vector<GeometryPart> parts;
+  std::vector<GeometryPart> parts;          ///< in the coordinates of the file
 };
 
 /// The elements of a file, read one by one. One thread at a time may use it.

@@ -181,10 +181,10 @@ class RuleImport {
     const DerivedShapes derived =
         derive_shapes(parts, rule.rule->shape, shared_with(element, rule.rule->shape));
     for (const auto& [reason, count] : derived.omitted) reject(element, reason, count);
-    for (const Shape& shape : derived.shapes) add(element, rule, shape);
+    for (const DerivedShape& shape : derived.shapes) add(element, rule, shape);
   }
 
-  void add(const MapElement& element, BoundRule& rule, const Shape& shape) {
+  void add(const MapElement& element, BoundRule& rule, const DerivedShape& shape) {
     ++result_.rows;
     Landmark landmark = landmark_of_shape(element, rule, types_[rule.type], shape);
     // A point keeps its coordinates to the last bit.

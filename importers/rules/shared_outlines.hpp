@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
+#include "geo/outline_shapes.hpp"
 #include "importers/rules/map_element.hpp"
-#include "importers/rules/outline_shapes.hpp"
 namespace waymark::importers {
 
 /// Vertices and walls that several outlines have in common, as houses of a row. Vertices are the same if

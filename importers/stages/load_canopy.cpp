@@ -16,7 +16,7 @@ namespace {
 struct LoadCanopy {
   struct Options {
     std::vector<std::string> chm, dsm, dtm, las;
-    Meters resolution{0};
+    Meters resolution{0}, ground_square{20};
     bool flights = false;
     std::string forest_type, crs, aoi;
     std::int64_t tile_cells = 1024;
@@ -34,6 +34,12 @@ struct LoadCanopy {
              {.help = "Cell size of the canopy made from laser points; 0: by their density",
               .min = 0,
               .max = 20});
+      option(
+          "ground_square", ground_square,
+          {.help = "Side of the squares whose lowest points begin the ground where none is classified: wider "
+                   "than the widest roof or crown",
+           .min = 5,
+           .max = 500});
       option(
           "flights", flights,
           {.help =
@@ -64,7 +70,7 @@ struct LoadCanopy {
   static pipeline::StageSpec spec() {
     return {.name = "load_canopy",
             .summary = "Opens canopy height models, or surface and terrain models, and cuts them into tiles",
-            .version = 3,
+            .version = 4,
             .scope = pipeline::Scope::map,
             .lists = pipeline::Scope::tile,
             .outputs = {dem, canopies, tiles}};
@@ -93,6 +99,7 @@ struct LoadCanopy {
                      .crs = options.crs,
                      .area = options.aoi.empty() ? "" : unit.path(options.aoi),
                      .memory_bytes = options.memory.bytes()};
+    all.ground_square = options.ground_square.value;
     check(options);
     const std::vector<CanopyImport> surveys = options.flights ? open_each(all) : std::vector{all};
     Canopies opened;

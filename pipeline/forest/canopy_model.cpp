@@ -164,9 +164,12 @@ Grid<float> heights_above(const Ground& ground, std::span<const Eigen::Vector3d>
 
 }  // namespace
 
+Grid<float> ground_grid(std::span<const Eigen::Vector3d> ground, const CellFrame& frame) {
+  return rasterised_tin(ground, frame, 1e9, Beyond::nearest);
+}
+
 CanopyBlock canopy_block(const LaserPoints& points, const CellFrame& frame, double spacing) {
-  CanopyBlock block{Grid<float>(frame.columns, frame.rows, std::nanf("")),
-                    rasterised_tin(points.ground, frame, 1e9, Beyond::nearest)};
+  CanopyBlock block{Grid<float>(frame.columns, frame.rows, std::nanf("")), ground_grid(points.ground, frame)};
   if (points.ground.empty()) return block;
   block.heights =
       heights_above([&](double column, double row) { return ground_at(block.ground, column, row); },

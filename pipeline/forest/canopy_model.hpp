@@ -24,6 +24,10 @@ struct CanopyBlock {
   Grid<float> ground;   ///< elevation, metres
 };
 
+/// Returns elevations of the ground at cell centres, metres: linear in the Delaunay triangulation of ground
+/// points, beyond it that of the nearest. NaN without points. The order of the points does not matter.
+Grid<float> ground_grid(std::span<const Eigen::Vector3d> ground, const CellFrame& frame);
+
 /// Computes a pit-free canopy height model (Khosravipour et al. 2014).
 /// - Heights above the ground TIN are triangulated from the highest point of each cell. The same follows with
 ///   short edges for points above 2, 5, 10, 15 ... metres; each cell takes the highest layer.

@@ -170,6 +170,7 @@ LasPoint las_point(const Point14& point, const LasHeader& header) {
   p.z = header.offset[2] + header.scale[2] * point.at[2];
   p.classification = static_cast<std::uint8_t>(point.classification);
   p.return_number = static_cast<std::uint8_t>(point.number);
+  p.return_count = static_cast<std::uint8_t>(point.returns);
   p.withheld = (point.flags & 4) != 0;
   return p;
 }

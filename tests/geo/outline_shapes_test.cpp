@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/rules/outline_shapes.hpp"
+#include "geo/outline_shapes.hpp"
 
 #include <gmock/gmock.h>
 
@@ -11,7 +11,6 @@
 #include "core/units.hpp"
 
 namespace waymark::test {
-using namespace importers;
 namespace {
 
 using Kind = GeometryPart::Kind;
@@ -23,8 +22,8 @@ std::vector<GeometryPart> house() {
   return {{Kind::outline, {{0, 0, 0}, {10, 0, 0}, {10, 4, 0}, {0, 4, 0}}}};
 }
 
-const Shape& at(const DerivedShapes& derived, double x, double y, std::size_t nth = 0) {
-  for (const Shape& shape : derived.shapes)
+const DerivedShape& at(const DerivedShapes& derived, double x, double y, std::size_t nth = 0) {
+  for (const DerivedShape& shape : derived.shapes)
     if ((shape.at.head<2>() - Eigen::Vector2d(x, y)).norm() < 1e-9 && nth-- == 0) return shape;
   throw std::logic_error("no shape there");
 }
@@ -55,7 +54,7 @@ TEST(OutlineShapes, ACourtyardIsOutside) {
 TEST(OutlineShapes, WallsFaceOutwardsAndAreCertainAcrossOnly) {
   const DerivedShapes derived = derive_shapes(house(), {.shape = ShapeOf::walls, .max_length = 5});
   ASSERT_EQ(derived.shapes.size(), 6U);  // the long walls are cut in two
-  const Shape& south = at(derived, 2.5, 0);
+  const DerivedShape& south = at(derived, 2.5, 0);
   EXPECT_NEAR(std::abs(south.values.at("direction")), kTurn, 1e-12);
   EXPECT_NEAR(south.values.at("length"), 5, 1e-12);
   EXPECT_NEAR(south.along_sd, 5 / std::sqrt(12.0), 1e-12);
@@ -68,8 +67,8 @@ TEST(OutlineShapes, BothEndsOfALineHaveTwoFaces) {
   const DerivedShapes derived = derive_shapes(wall, {.shape = ShapeOf::ends});
   ASSERT_EQ(derived.shapes.size(), 4U);
   // From the north one looks south and has the wall, west of its east end, on the right.
-  const Shape& first = at(derived, 5, 0, 0);
-  const Shape& north = std::abs(first.values.at("direction")) < 1e-9 ? first : at(derived, 5, 0, 1);
+  const DerivedShape& first = at(derived, 5, 0, 0);
+  const DerivedShape& north = std::abs(first.values.at("direction")) < 1e-9 ? first : at(derived, 5, 0, 1);
   EXPECT_NEAR(north.values.at("direction"), 0, 1e-12);
   EXPECT_EQ(north.values.at("side"), -1);
 }
@@ -104,8 +103,8 @@ TEST(OutlineShapes, LinesThatMeetAreACornerAndNoEnds) {
   const DerivedShapes corner = derive_shapes(wall, {.shape = ShapeOf::corners}, joined);
   ASSERT_EQ(corner.shapes.size(), 2U);
   // The wall comes from the west and goes on to the north: the open quarter is north-west.
-  const Shape& first = corner.shapes[0];
-  const Shape& quarter = first.values.at("opening_angle") < kTurn ? first : corner.shapes[1];
+  const DerivedShape& first = corner.shapes[0];
+  const DerivedShape& quarter = first.values.at("opening_angle") < kTurn ? first : corner.shapes[1];
   EXPECT_NEAR(quarter.values.at("opening_angle"), kTurn / 2, 1e-12);
   EXPECT_NEAR(quarter.values.at("direction"), -kTurn / 4, 1e-12);
   joined[0][1].next = Eigen::Vector2d(9, 0);  // straight on
@@ -155,7 +154,7 @@ TEST(OutlineShapes, CornersTurnWithTheOutline) {
     const ShapeOptions options{.shape = ShapeOf::corners, .min_turn = 1e-3};
     const DerivedShapes before = derive_shapes({star}, options), after = derive_shapes({turned}, options);
     ASSERT_EQ(before.shapes.size(), after.shapes.size()) << trial;
-    for (const Shape& shape : before.shapes) {
+    for (const DerivedShape& shape : before.shapes) {
       const Eigen::Vector3d to =
           Eigen::AngleAxisd(-turn, Eigen::Vector3d::UnitZ()) * shape.at + Eigen::Vector3d(100, -50, 0);
       const auto twin =

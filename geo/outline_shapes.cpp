@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "importers/rules/outline_shapes.hpp"
+#include "geo/outline_shapes.hpp"
 
 #include <algorithm>
 #include <numbers>
 
 #include "core/units.hpp"
 
-namespace waymark::importers {
+namespace waymark::inline geo {
 namespace {
 
 using Kind = GeometryPart::Kind;
@@ -274,7 +274,7 @@ void add_centroid(const std::vector<GeometryPart>& parts, DerivedShapes& into) {
     ++into.omitted[rings ? "outline without area" : "line of zero length"];
     return;
   }
-  Shape shape{.at = moments.centroid(), .vertex = {}, .values = {}};
+  DerivedShape shape{.at = moments.centroid(), .vertex = {}, .values = {}};
   if (rings) {
     shape.values["area"] = moments.weight();
     shape.values["diameter"] = std::sqrt(4 * moments.weight() / kHalfTurn);
@@ -335,4 +335,4 @@ DerivedShapes derive_shapes(const std::vector<GeometryPart>& parts, const ShapeO
   return derived;
 }
 
-}  // namespace waymark::importers
+}  // namespace waymark::inline geo

@@ -6,8 +6,8 @@
 #include <optional>
 #include <string>
 #include <vector>
-#include "importers/rules/map_element.hpp"
-namespace waymark::importers {
+#include "geo/geometry_part.hpp"
+namespace waymark::inline geo {
 
 /// What becomes a landmark of an element's geometry.
 enum class ShapeOf {
@@ -36,7 +36,7 @@ struct ShapeOptions {
 };
 
 /// Position of a landmark and what its geometry says of its features.
-struct Shape {
+struct DerivedShape {
   Eigen::Vector3d at;   ///< as the vertices: metres
   std::string vertex;   ///< of the element, from 1: "3"; empty if the element has one shape
   double along_sd = 0;  ///< m along `along` beside the position's own: of a wall
@@ -47,7 +47,7 @@ struct Shape {
 };
 
 struct DerivedShapes {
-  std::vector<Shape> shapes;
+  std::vector<DerivedShape> shapes;
   std::map<std::string, int> omitted;  ///< reason -> number of vertices or pieces
 };
 
@@ -67,4 +67,4 @@ struct SharedVertex {
 DerivedShapes derive_shapes(const std::vector<GeometryPart>& parts, const ShapeOptions& options,
                             const std::vector<std::vector<SharedVertex>>& shared = {});
 
-}  // namespace waymark::importers
+}  // namespace waymark::inline geo
