@@ -61,7 +61,7 @@ TEST(ViewForm, ShapesFollowFromTheDeclarations) {
   const std::map<std::string, std::string> expected{
       {"beacon", "cylinder"},    {"building", "block"},     {"crater", "bowl"},     {"door", "portal"},
       {"lane_mark", "strip"},    {"mountain_top", "cone"},  {"pillar", "cylinder"}, {"pole", "cylinder"},
-      {"rock", "sphere"},        {"traffic_sign", "plate"}, {"tree", "canopy"},     {"wall", "wall"},
+      {"rock", "cylinder"},      {"traffic_sign", "plate"}, {"tree", "canopy"},     {"wall", "wall"},
       {"wall_corner", "corner"}, {"wall_end", "end"}};
   for (const auto& [name, shape] : expected) EXPECT_EQ(shapes[name], shape) << name;
   for (const auto& [name, shape] : shapes)
