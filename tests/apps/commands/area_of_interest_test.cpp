@@ -171,8 +171,9 @@ TEST_F(AreaOption, OfADetectionDropsWhatLiesOutside) {
                  folder_ / "plain.png" + "'")
                 .code,
             0);
-  inside[2] = folder_ / "plain.png";
-  EXPECT_THAT(waymark(inside).err, HasSubstr("no area of interest applies"));
+  const Outcome plain = waymark({"detect", "rocks", folder_ / "plain.png", "-o", folder_ / "d.csv",
+                                 "--image-sun-angle", "180", "--aoi", folder_ / "left.geojson"});
+  EXPECT_THAT(plain.err, HasSubstr("no area of interest applies"));
 }
 
 }  // namespace
