@@ -23,6 +23,7 @@ set(alone
   pipeline/fusion/valuation/landmark_valuation.cpp pipeline/vision/opencv_version.cpp
   testbed/landing/crater_field.cpp testbed/landing/crater_profile.cpp
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp
+  tests/apps/commands/area_of_interest_test.cpp tests/exporters/vector/track_file_test.cpp tests/workflows/planning/sight_terrain_test.cpp
   workflows/build_details.cpp)
 
 function(waymark_unity TARGET)

@@ -21,8 +21,8 @@ struct Finding {
 /// writes. Throws Error if the file cannot be opened as a map.
 std::vector<Finding> validate_map(const std::filesystem::path& path);
 
-/// Throws Error{input} with the first finding if a map has errors: a table, report or page made from it would
-/// be wrong. 3 us per landmark.
+/// Throws Error{input} with the first finding if a landmark has impossible numbers: a table, report or page
+/// made from the map would be wrong. Other faults do not matter to readers. 2 us per landmark.
 void check_before_reading(const std::filesystem::path& map);
 
 /// Throws Error{input} with the first finding if a map has errors: a map made from it would have them, too.

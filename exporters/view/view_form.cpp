@@ -29,10 +29,10 @@ float number(const Landmark& landmark, const LandmarkType& type, const std::stri
 
 std::string view_shape(const LandmarkType& type) {
   const auto direction = find_direction(type);
-  if (!direction || type.drawn_as != Solid::point) return solid_name(type);
+  if (!direction || solid_name(type) != "point") return solid_name(type);
   const auto has = [&](const std::string& feature) { return find_feature(type, feature).has_value(); };
   if (type.features[*direction].scale == Scale::direction) {
-    if (has("length")) return "wall";
+    if (has("length")) return "panel";
     if (has("opening_angle")) return "corner";
     if (has("side")) return "end";
     return has("height") ? "plate" : solid_name(type);
@@ -43,7 +43,8 @@ std::string view_shape(const LandmarkType& type) {
 }
 
 bool is_oriented(std::string_view shape) {
-  constexpr std::array<std::string_view, 7> all{"wall", "corner", "end", "plate", "block", "strip", "portal"};
+  constexpr std::array<std::string_view, 7> all{"panel", "corner", "end",   "plate",
+                                                "block", "strip",  "portal"};
   return std::ranges::find(all, shape) != all.end();
 }
 

@@ -8,7 +8,7 @@
 namespace waymark::exporters {
 
 /// Returns the shape in which the viewer draws a type, from what the type declares:
-/// - With a direction (Scale::direction, the normal of a face): `wall` if it has a `length`, `corner` an
+/// - With a direction (Scale::direction, the normal of a face): `panel` if it has a `length`, `corner` an
 ///   `opening_angle`, `end` a `side`, `plate` a `height`.
 /// - With an axis (Scale::axis, the long side): `block` if it is upright with a body, `strip` if it has
 /// `length`

@@ -63,8 +63,8 @@ def _raise(result, exit_code):
 def merge(maps, output, *, progress=None, **options):
     """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical.
 
-    options: changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map to
-    the second.
+    options: aoi, changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map
+    to the second.
     """
     return call(_waymark.merge, keywords(maps=[os.fspath(map) for map in maps], output=output, **options),
                 progress=progress)

@@ -37,7 +37,8 @@ void check(const ObservabilityRequest& request) {
   };
   if (fs::path(request.output).extension() != ".tif")
     refuse(fmt::format("the raster '{}' does not end in .tif", request.output), "it is a GeoTIFF");
-  if (request.cell != 0) check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
+  if (!std::isnan(request.cell))
+    check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.drive > 0 && request.drive <= 1e5))
     refuse(fmt::format("--drive {:g} is outside (0, 100000] m", request.drive), "");
   check_number("--sensor-height", request.sensor_height, "m", {.help = "", .min = 0, .max = 1000});
@@ -66,7 +67,7 @@ GridGeometry grid_of(const RobotMap& map, const localization::LandmarkGrid& land
   if (box.isEmpty())
     throw Error(ErrorCode::input, "no landmark can be seen from the area of interest", request.aoi,
                 "draw it nearer to the landmarks of the map");
-  if (request.cell == 0) request.cell = default_cell(box.volume() * metres * metres);
+  if (std::isnan(request.cell)) request.cell = default_cell(box.volume() * metres * metres);
   const double cell = request.cell / metres;
   const double west = std::floor(box.min().x() / cell), east = std::ceil(box.max().x() / cell),
                south = std::floor(box.min().y() / cell), north = std::ceil(box.max().y() / cell);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 #include "workflows/callbacks.hpp"
@@ -9,11 +10,11 @@ namespace waymark::workflows {
 /// Request of a raster of what the landmarks of a map give a localizer.
 struct ObservabilityRequest {
   std::string map;
-  std::string output;                 ///< .tif; a style .qml is written beside it
-  std::string sensor;                 ///< name or file (.json) of a sensor profile
-  double range = 0, view = 0;         ///< metres, degrees; 0: those of the sensor
-  double cell = 0;                    ///< metres; 0: 2 m, or as wide as makes a million cells
-  double drive = 100;                 ///< metres driven at each place
+  std::string output;                                      ///< .tif; a style .qml is written beside it
+  std::string sensor;                                      ///< name or file (.json) of a sensor profile
+  double range = 0, view = 0;                              ///< metres, degrees; 0: those of the sensor
+  double cell = std::numeric_limits<double>::quiet_NaN();  ///< metres; NaN: 2, or wider for a million cells
+  double drive = 100;                                      ///< metres driven at each place
   std::vector<std::string> dem = {};  ///< terrain that hides landmarks; empty: stored in the map, or none
   double sensor_height = 1;           ///< metres above the terrain
   std::string aoi = {};               ///< polygons: cells outside have no value; empty: all

@@ -2,7 +2,7 @@
 // Landmarks that have a direction and are drawn as boxes: walls, corners, plates, doors, buildings, marks.
 
 // Heights in metres where a landmark has none, and sizes that no type states.
-const NOMINAL = {wall: 2.5, corner: 2.5, end: 2.5, plate: 2.2, portal: 2.1, block: 3, strip: 0};
+const NOMINAL = {panel: 2.5, corner: 2.5, end: 2.5, plate: 2.2, portal: 2.1, block: 3, strip: 0};
 const THICK = 0.12, WING = 0.6, POST = 0.04, FACE = 0.3, JAMB = 0.08, PAINT = 0.03, DRAPE = 4;
 const GREY = [0.75, 0.75, 0.75];
 
@@ -10,7 +10,7 @@ const GREY = [0.75, 0.75, 0.75];
 // left, z above the ground.
 const FORMS = {
   // The position lies on the face whose normal is `turn`.
-  wall: (f, top) => [[-THICK, 0, -f.length / 2, f.length / 2, -0.3, top, f.turn]],
+  panel: (f, top) => [[-THICK, 0, -f.length / 2, f.length / 2, -0.3, top, f.turn]],
   // Two pieces of the walls that meet, `opening` apart about the bisector.
   corner: (f, top) => [-1, 1].map(s => [0, WING, s > 0 ? 0 : -THICK, s > 0 ? THICK : 0, -0.3, top, f.turn + s * f.opening / 2]),
   // The wall lies left of its end for who looks at the face: on the right of the normal.
@@ -34,7 +34,7 @@ function formOf(layer, i) {
   const f = {turn: form[at], length: form[at + FORM.length], width: form[at + FORM.width], opening: form[at + FORM.opening],
              side: form[at + FORM.side], radius: n[i * LANDMARK.size + LANDMARK.radius]};
   const top = n[i * LANDMARK.size + LANDMARK.height] || NOMINAL[layer.shape];
-  const needed = {wall: f.length, corner: f.opening, portal: f.width, block: f.radius, strip: f.length * f.width}[layer.shape];
+  const needed = {panel: f.length, corner: f.opening, portal: f.width, block: f.radius, strip: f.length * f.width}[layer.shape];
   const known = Number.isFinite(f.turn) && (needed === undefined || needed > 0);
   return known ? FORMS[layer.shape](f, top) : [[-0.15, 0.15, -0.15, 0.15, 0, Math.max(top, 0.3), 0]];
 }

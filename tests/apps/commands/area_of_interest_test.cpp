@@ -18,9 +18,9 @@ using Json = nlohmann::json;
 
 /// Trees of a grid of 10 x 10, 10 m apart, from (500000, 5200000) in UTM zone 32, and areas in degrees and in
 /// the zone: x from 500000 to 500045, y from 5200000 to 5200095, which hold 50 of them.
-class AreaOfInterest : public testing::Test {
+class AreaOption : public testing::Test {
  protected:
-  AreaOfInterest() {
+  AreaOption() {
     std::string table = "x,y,height,diameter\n";
     for (int y = 0; y < 10; ++y)
       for (int x = 0; x < 10; ++x)
@@ -57,7 +57,7 @@ class AreaOfInterest : public testing::Test {
   std::string map_ = folder_ / "trees.gpkg";
 };
 
-TEST_F(AreaOfInterest, OfAnImportRejectsAndCountsRowsOutside) {
+TEST_F(AreaOption, OfAnImportRejectsAndCountsRowsOutside) {
   for (const char* area : {"utm.geojson", "degrees.geojson"}) {
     const Outcome made = waymark({"import", folder_ / "trees.csv", "-o", folder_ / "part.gpkg", "--type",
                                   "tree", "--map-crs", "EPSG:32632", "--aoi", folder_ / area});
@@ -72,7 +72,7 @@ TEST_F(AreaOfInterest, OfAnImportRejectsAndCountsRowsOutside) {
   EXPECT_THAT(far.err, HasSubstr("none of the 100 rows lies in the area of interest"));
 }
 
-TEST_F(AreaOfInterest, OfRulesRejectsElementsOutside) {
+TEST_F(AreaOption, OfRulesRejectsElementsOutside) {
   ASSERT_EQ(waymark({"export", map_, folder_ / "trees.fgb"}).code, 0);
   const Outcome rules = waymark({"import", folder_ / "trees.fgb", "-o", folder_ / "part.gpkg", "--rules",
                                  "trees", "--aoi", folder_ / "utm.geojson"});
@@ -81,7 +81,7 @@ TEST_F(AreaOfInterest, OfRulesRejectsElementsOutside) {
   EXPECT_THAT(rules.err, HasSubstr("50 outside the area of interest"));
 }
 
-TEST_F(AreaOfInterest, OfAReportAndAWebMapTakesTheLandmarksInside) {
+TEST_F(AreaOption, OfAReportAndAWebMapTakesTheLandmarksInside) {
   const Outcome report =
       waymark({"report", map_, "-o", folder_ / "r.html", "--aoi", folder_ / "degrees.geojson"});
   ASSERT_EQ(report.code, 0) << report.err;
@@ -97,7 +97,7 @@ TEST_F(AreaOfInterest, OfAReportAndAWebMapTakesTheLandmarksInside) {
   }
 }
 
-TEST_F(AreaOfInterest, OfAMergeCutsTheResult) {
+TEST_F(AreaOption, OfAMergeCutsTheResult) {
   write_text(folder_ / "more.csv", "x,y,height,diameter\n500005,5200005,20,0.3\n500095,5200005,20,0.3\n");
   ASSERT_EQ(waymark({"import", folder_ / "more.csv", "-o", folder_ / "more.gpkg", "--type", "tree",
                      "--map-crs", "EPSG:32632"})
@@ -112,7 +112,7 @@ TEST_F(AreaOfInterest, OfAMergeCutsTheResult) {
   EXPECT_EQ(waymark({"validate", folder_ / "m.gpkg"}).code, 0);
 }
 
-TEST_F(AreaOfInterest, OfAnInventoryIsItsStand) {
+TEST_F(AreaOption, OfAnInventoryIsItsStand) {
   const Outcome made =
       waymark({"inventory", map_, "-o", folder_ / "s.csv", "--aoi", folder_ / "degrees.geojson"});
   ASSERT_EQ(made.code, 0) << made.err;
@@ -123,7 +123,7 @@ TEST_F(AreaOfInterest, OfAnInventoryIsItsStand) {
   EXPECT_THAT(both.err, HasSubstr("--aoi exchanges the stands"));
 }
 
-TEST_F(AreaOfInterest, OfADetectionDropsWhatLiesOutside) {
+TEST_F(AreaOption, OfADetectionDropsWhatLiesOutside) {
   // Bright discs with shadows every 40 pixels: rocks of an orthophoto of 0.1 m.
   GDALAllRegister();
   const std::string image = folder_ / "ortho.tif";
@@ -171,8 +171,9 @@ TEST_F(AreaOfInterest, OfADetectionDropsWhatLiesOutside) {
                  folder_ / "plain.png" + "'")
                 .code,
             0);
-  inside[2] = folder_ / "plain.png";
-  EXPECT_THAT(waymark(inside).err, HasSubstr("no area of interest applies"));
+  const Outcome plain = waymark({"detect", "rocks", folder_ / "plain.png", "-o", folder_ / "d.csv",
+                                 "--image-sun-angle", "180", "--aoi", folder_ / "left.geojson"});
+  EXPECT_THAT(plain.err, HasSubstr("no area of interest applies"));
 }
 
 }  // namespace

@@ -61,18 +61,18 @@ TEST(ViewForm, ShapesFollowFromTheDeclarations) {
   const std::map<std::string, std::string> expected{
       {"beacon", "cylinder"},    {"building", "block"},     {"crater", "bowl"},     {"door", "portal"},
       {"lane_mark", "strip"},    {"mountain_top", "cone"},  {"pillar", "cylinder"}, {"pole", "cylinder"},
-      {"rock", "sphere"},        {"traffic_sign", "plate"}, {"tree", "canopy"},     {"wall", "wall"},
+      {"rock", "cylinder"},      {"traffic_sign", "plate"}, {"tree", "canopy"},     {"wall", "panel"},
       {"wall_corner", "corner"}, {"wall_end", "end"}};
   for (const auto& [name, shape] : expected) EXPECT_EQ(shapes[name], shape) << name;
   for (const auto& [name, shape] : shapes)
-    EXPECT_EQ(is_oriented(shape), testing::Matches(testing::AnyOf("wall", "corner", "end", "plate", "block",
+    EXPECT_EQ(is_oriented(shape), testing::Matches(testing::AnyOf("panel", "corner", "end", "plate", "block",
                                                                   "strip", "portal"))(shape));
   // A type of a plug-in is drawn by its own declaration.
   const LandmarkType fence{
       .name = "fence",
       .summary = "",
       .features = {{"facing", "rad", Scale::direction, -4, 4, ""}, {"length", "m", Scale::ratio, 0, 99, ""}}};
-  EXPECT_EQ(view_shape(fence), "wall");
+  EXPECT_EQ(view_shape(fence), "panel");
 }
 
 TEST(ViewForm, DirectionsAreTurnedFromTheGridToTheView) {
