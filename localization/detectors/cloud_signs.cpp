@@ -48,6 +48,19 @@ void visit_neighbours(const PlateCell& of, int reach, const Visit& visit) {
       for (int w = z - reach; w <= z + reach; ++w) visit(PlateCell{u, v, w});
 }
 
+/// Returns the lowest ground about a point: behind parked cars the nearest ground that is seen is their
+/// roofs.
+float open_ground(const CloudGround& ground, const Eigen::Vector3f& p) {
+  constexpr float kAbout = 3;  // m
+  float lowest = ground.at(p.x(), p.y());
+  for (const float dx : {-kAbout, 0.0F, kAbout})
+    for (const float dy : {-kAbout, 0.0F, kAbout})
+      if (const float height = ground.at(p.x() + dx, p.y() + dy);
+          !(height >= lowest) && std::isfinite(height))
+        lowest = height;
+  return lowest;
+}
+
 /// Returns the points above 1 m in cells, sorted within each.
 PlateCells raised_points(const PointCloud& cloud, const CloudSignOptions& options,
                          std::optional<float> strong) {
@@ -57,7 +70,7 @@ PlateCells raised_points(const PointCloud& cloud, const CloudSignOptions& option
     const Eigen::Vector3f& p = cloud.points[i];
     if (!p.allFinite() || !(p.head<2>().norm() < static_cast<float>(options.max_range))) continue;
     if (strong && !(cloud.intensities[i] >= *strong)) continue;
-    const double height = static_cast<double>(p.z() - ground.at(p.x(), p.y()));
+    const double height = static_cast<double>(p.z() - open_ground(ground, p));
     if (!(height > kSignFoot && height < options.max_top + options.max_size)) continue;
     cells[plate_cell(p.cast<double>())].push_back({p.cast<double>(), height});
   }

@@ -77,8 +77,9 @@ class StreetSide {
   void plate(const Eigen::Vector2d& at) {
     const double half = surfaces_.uniform(0.25, 0.4), middle = town_.ground(at) + kSignMiddle;
     const double x = at.x() + side_ * 0.06;
-    town_.walls.push_back({.from = {x, at.y() - half},
-                           .to = {x, at.y() + half},
+    // Its front runs from the left to the right of who looks at it.
+    town_.walls.push_back({.from = {x, at.y() - side_ * half},
+                           .to = {x, at.y() + side_ * half},
                            .bottom = middle - half,
                            .top = middle + half,
                            .surface = {.reflectivity = 1, .retro = true}});

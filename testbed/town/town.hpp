@@ -13,7 +13,7 @@ namespace waymark::testbed {
 struct TownSurface {
   double reflectivity = 0.3;  ///< of a perpendicular beam, 0 to 1
   double gloss = 0;           ///< added to it by a glossy surface that is seen head-on
-  bool retro = false;         ///< reflects to the scanner from any side, as signs do
+  bool retro = false;         ///< reflects back to the scanner at any angle, as signs and tape do
 };
 
 /// Wall, side of a car, leaf of a door, kerb or plate of a sign: an upright rectangle.
@@ -49,6 +49,7 @@ struct TownHit {
   double bottom = 0, top = 0;        ///< m above the road
   const TownSurface* surface = nullptr;
   bool has_windows = false;
+  bool is_front = true;  ///< of a wall: it runs from the left to the right of the ray
 };
 
 /// True landmark. Angles are azimuths, rad clockwise from north; values that a type lacks are absent.
@@ -97,7 +98,7 @@ void Town::visit_hits(const Eigen::Vector2d& from, const Eigen::Vector2d& along,
     const double range = cross(off, run) / area, part = cross(off, along) / area, length = run.norm();
     if (range > 0 && part >= 0 && part <= 1)
       visit(TownHit{range, part * length, std::abs(area) / length, wall.bottom, wall.top, &wall.surface,
-                    wall.has_windows});
+                    wall.has_windows, area < 0});
   }
   for (const TownPost& post : posts) {
     const Eigen::Vector2d off = post.at_time(t) - from;

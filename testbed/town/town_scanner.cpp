@@ -93,10 +93,12 @@ class Column {
 }  // namespace
 
 float strength_of(const TownHit& hit, Random& random) {
+  constexpr double kBack = 0.3;  // reflectivity of the back of a sign
   const TownSurface& s = *hit.surface;
   const double angle = std::acos(std::clamp(hit.cosine, 0.0, 1.0)) / kGlossAngle;
+  const double dull = s.retro ? kBack : s.reflectivity;
   const double strength =
-      s.retro ? s.reflectivity : s.reflectivity * hit.cosine + s.gloss * std::exp(-angle * angle);
+      s.retro && hit.is_front ? s.reflectivity : dull * hit.cosine + s.gloss * std::exp(-angle * angle);
   return static_cast<float>(std::clamp(strength + random.normal(0, 0.02), 0.001, 1.0));
 }
 
