@@ -11,7 +11,7 @@ void register_type_pillar(TypeRegistry& types) {
                    {"height", "m", Scale::ratio, 0.3, 60, "Floor to ceiling"}},
       .evidence = EvidenceModel::upright,
       .body = {"diameter", 0.5},
-      .existence = {.further_detection = 0.3, .missed_image = 0.3},
+      .existence = {.further_detection = 0.3, .missed_image = 0.3, .min_probability = 0.5},
       .drawn_as = Solid::cylinder,
       .colour = "#6d4c41",
       .label_feature = "",

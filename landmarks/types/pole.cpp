@@ -14,7 +14,7 @@ void register_type_pole(TypeRegistry& types) {
       .evidence = EvidenceModel::upright,
       .body = {"diameter", 0.5},
       // Assumed: people and wheels look like posts, and move on.
-      .existence = {.further_detection = 0.3, .missed_image = 0.3},
+      .existence = {.further_detection = 0.3, .missed_image = 0.3, .min_probability = 0.5},
       .drawn_as = Solid::cylinder,
       .colour = "#ad1457",
       .label_feature = "",

@@ -7,6 +7,7 @@
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/fusion/association/checked_alignment.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
+#include "pipeline/fusion/association/outlying_images.hpp"
 #include "pipeline/fusion/projection/dem_shift.hpp"
 #include "pipeline/fusion/projection/dem_terrain.hpp"
 #include "pipeline/fusion/projection/image_view_codec.hpp"
@@ -87,15 +88,33 @@ struct AlignImages {
     return text + ": correct the camera file or the DEM";
   }
 
+  // Names the images that alone do not fit; empty if there are none.
+  static std::string outliers(const Repetition& seen, const std::vector<ImageView>& images) {
+    const OutlyingImages found = find_outlying_images(seen);
+    if (found.images.empty()) return "";
+    std::string names;
+    for (const OutlyingImage& one : found.images)
+      names += fmt::format("{}{} ({:.0f} % of {})", names.empty() ? "" : ", ", images[one.image].name,
+                           100 * one.raw, one.expected);
+    return fmt::format("; {} {} hardly any other image, {:.0f} % are without {}: check {}", names,
+                       found.images.size() == 1 ? "fits" : "fit", 100 * found.rest,
+                       found.images.size() == 1 ? "it" : "them",
+                       found.images.size() == 1 ? "its pose" : "their poses");
+  }
+
   // Reports what the comparison of the images says about their geometry.
   static void report(const CheckedAlignment& checked, const Options& options, StageContext& unit) {
     using Verdict = CheckedAlignment::Verdict;
+    const std::string named =
+        checked.causes.empty() ? outliers(checked.aligned, checked.alignment.images) : "";
     switch (checked.verdict) {
       case Verdict::unknown:
       case Verdict::sound:
         if (!checked.causes.empty())
           unit.warn(fmt::format("the images fit each other badly: {}; {}", counted(checked.stated),
                                 advice(checked.causes)));
+        else if (!named.empty())
+          unit.warn(fmt::format("not all images fit each other: {}{}", counted(checked.aligned), named));
         return;
       case Verdict::widened:
         unit.warn(
@@ -105,18 +124,18 @@ struct AlignImages {
                         counted(checked.stated), added(checked),
                         checked.unstated ? " for what is not stated" : " added to their standard deviations",
                         100 * checked.aligned.raw,
-                        checked.causes.empty() ? "" : "; without that " + advice(checked.causes)));
+                        checked.causes.empty() ? named : "; without that " + advice(checked.causes)));
         return;
       case Verdict::doubtful:
-        unit.warn(fmt::format("the images hardly fit each other: {}; {}", counted(checked.aligned),
-                              advice(checked.causes)));
+        unit.warn(fmt::format("the images hardly fit each other: {}{}", counted(checked.aligned),
+                              named.empty() ? "; " + advice(checked.causes) : named));
         return;
       case Verdict::wrong:
         break;
     }
     const std::string problem =
-        fmt::format("the images do not fit each other: {}",
-                    counted(checked.causes.empty() ? checked.aligned : checked.stated));
+        fmt::format("the images do not fit each other: {}{}",
+                    counted(checked.causes.empty() ? checked.aligned : checked.stated), named);
     if (options.wrong_geometry == "refuse")
       throw Error(
           ErrorCode::input, problem, "images",

@@ -26,6 +26,10 @@ std::string noise_as_json(OdometryErrors errors) {
 
 }  // namespace
 
+std::string odometry_noise_json(const DriveSettings& settings, std::span<const DriveStep> steps) {
+  return noise_as_json(odometry_errors(settings, steps));
+}
+
 std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start,
                        std::span<const DriveStep> steps) {
   Random random(world.seed, "start");
@@ -39,7 +43,7 @@ std::string log_header(const DriveWorld& world, const LogCrs& place, const local
       "{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"odometry_noise\":{},\"vehicle\":\"{}\",\"seed\":{}}}\n",
       local ? "map" : "crs", local ? "" : fmt::format(",\"crs\":\"{}\"", place.crs),
       x / place.metres_per_unit, y / place.metres_per_unit, yaw, std::max(s.start_sd, 0.01),
-      std::max(to_radians(s.start_yaw_sd).value, 0.001), noise_as_json(odometry_errors(s, steps)), s.vehicle,
+      std::max(to_radians(s.start_yaw_sd).value, 0.001), odometry_noise_json(s, steps), s.vehicle,
       world.seed);
 }
 

@@ -15,6 +15,8 @@ namespace waymark::testbed {
 /// The header states the noise of odometry on ground as at the poses of `steps`, driven or planned.
 std::string log_header(const DriveWorld& world, const LogCrs& place, const localization::Pose2& start,
                        std::span<const DriveStep> steps);
+/// Returns the odometry noise of `steps` as the header states it, a JSON object.
+std::string odometry_noise_json(const DriveSettings& settings, std::span<const DriveStep> steps);
 /// Returns the odometry until the next step, and the true pose if the log has it.
 std::string odometry_lines(const DriveWorld& world, const LogCrs& place, const DriveStep& step);
 /// Returns the poses of the line scanners on the vehicle.

@@ -11,6 +11,7 @@
 
 #include "core/random.hpp"
 #include "testbed/drive/drive.hpp"
+#include "testbed/drive/drive_readings.hpp"
 #include "testbed/drive/ranges_text.hpp"
 #include "testbed/town/town_scanner.hpp"
 
@@ -107,9 +108,9 @@ TownDrive drive_through(const Town& town, const DriveSettings& settings, std::ui
   drive.log = fmt::format(
       "{{\"kind\":\"header\",\"version\":1,\"frame\":\"crs\",\"crs\":\"local\",\"start\":{{\"x\":{:.4f},"
       "\"y\":{:.4f},"
-      "\"yaw\":{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"seed\":{}}}\n",
+      "\"yaw\":{:.5f},\"sd\":{:.4g},\"yaw_sd\":{:.4g}}},\"odometry_noise\":{},\"seed\":{}}}\n",
       x, y, yaw, std::max(settings.start_sd, 0.01), std::max(to_radians(settings.start_yaw_sd).value, 0.001),
-      seed);
+      odometry_noise_json(settings, steps), seed);
   drive.track = "t,x,y,z,roll,pitch,yaw,var_x,var_y,cov_xy,var_yaw,matched,rejected\n";
   std::vector<std::string> lines(steps.size());
   std::vector<bool> scans(steps.size());

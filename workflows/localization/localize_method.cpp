@@ -44,19 +44,30 @@ void LocalizeSettings::describe(OptionVisitor& option) {
 }
 
 void LocalizeSettings::check_distance(const std::string& method) const {
-  if (identification.distance != "paper") return;
-  const auto refuse = [](const std::string& what, const std::string& advice) {
-    throw Error(ErrorCode::usage, what, "--set distance=paper", advice);
+  const bool is_particles = method == "pf" || method == "global";
+  const auto refuse = [](const std::string& what, const std::string& setting, const std::string& advice) {
+    throw Error(ErrorCode::usage, what, "--set " + setting, advice);
   };
+  if (identification.distance != "paper") {
+    const bool weighs = is_particles && particles.weight.weights == "paper";
+    if (!identification.alpha.empty() && !weighs)
+      refuse("alpha_f belongs to eq. 11, which this run does not use", "alpha=" + identification.alpha,
+             is_particles ? "add --set weights=paper" : "add --set distance=paper");
+    return;
+  }
+  const std::string setting = "distance=paper";
   if (!identification.distance_applies())
     refuse(
         fmt::format("association={} decides by its own evidence, not by eq. 11", identification.association),
-        "set association=nearest, greedy or hungarian");
+        setting, "set association=nearest, greedy or hungarian");
   if (method == "slam" || method == "graph")
-    refuse(fmt::format("--method {} has a data association of its own, without eq. 11", method),
+    refuse(fmt::format("--method {} has a data association of its own, without eq. 11", method), setting,
            "use --method ekf, ukf, pf or global");
-  if ((method == "pf" || method == "global") && particles.weight.weights != "paper")
-    refuse(fmt::format("weights={} has a distance of its own, not eq. 11", particles.weight.weights),
+  if (method == "odometry" || method == "beacons")
+    refuse(fmt::format("--method {} associates nothing by features", method), setting,
+           "use --method ekf, ukf, pf or global");
+  if (is_particles && particles.weight.weights != "paper")
+    refuse(fmt::format("weights={} has a distance of its own, not eq. 11", particles.weight.weights), setting,
            "add --set weights=paper");
 }
 

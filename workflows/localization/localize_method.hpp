@@ -28,7 +28,8 @@ struct LocalizeSettings {
   double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: standard deviations of the start
 
   void describe(OptionVisitor& option);
-  /// Throws Error{usage} if `distance=paper` cannot apply to all data association of the method.
+  /// Throws Error{usage} if `distance=paper` cannot apply to all data association of the method, or if
+  /// `alpha` is set without eq. 11.
   void check_distance(const std::string& method) const;
 };
 

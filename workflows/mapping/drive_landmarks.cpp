@@ -15,6 +15,7 @@
 #include "geo/axes_rotation.hpp"
 #include "localization/identification/feature_distance.hpp"
 #include "localization/identification/map_landmark.hpp"
+#include "pipeline/fusion/association/body_radius.hpp"
 #include "pipeline/fusion/association/merging.hpp"
 #include "pipeline/fusion/valuation/landmark_valuation.hpp"
 
@@ -24,9 +25,24 @@ namespace {
 using localization::SeenLandmark;
 
 constexpr double kNotMeasured = std::numeric_limits<double>::quiet_NaN();
-constexpr double kEndSd = 0.5;      // m of the ends of a seen piece of a line
-constexpr double kBeamSlack = 0.1;  // m by which a beam may end before a landmark that it shows
-constexpr double kMinCosine = 0.3;  // of the angle between the open side and the sensor
+constexpr double kEndSd = 0.5;        // m of the ends of a seen piece of a line
+constexpr double kBeamSlack = 0.1;    // m by which a beam may end before a landmark that it shows
+constexpr double kMinCosine = 0.3;    // of the angle between the open side and the sensor
+constexpr double kMaxTilt = 0.1;      // rad, of a scanner whose beams stay at the height of an upright object
+constexpr double kMinReturned = 0.6;  // of the beams through a place; what absorbs them would not be empty
+/// Log odds against an object per look through its place. The other detections of what moved on are sure of
+/// it, so one look does not decide.
+constexpr double kSeenThrough = 4;
+
+/// Returns the beam nearest to a bearing of the sensor; `std::nullopt` outside of the scan.
+std::optional<std::size_t> beam_towards(const localization::LaserScan& scan, double bearing) {
+  const double turn = std::remainder(bearing - scan.first_angle, 2 * std::numbers::pi);
+  for (const double angle : {turn, turn + 2 * std::numbers::pi, turn - 2 * std::numbers::pi}) {
+    const double beam = std::round(angle / scan.angle_step);
+    if (beam >= 0 && beam < static_cast<double>(scan.ranges.size())) return static_cast<std::size_t>(beam);
+  }
+  return std::nullopt;
+}
 
 /// The middle of the seen piece of a line in the frame of the sensor, and the unit vector along it.
 struct LinePiece {
@@ -169,9 +185,17 @@ double direction_of(const Landmark& landmark, const LandmarkType& type) {
   return kNotMeasured;
 }
 
+/// Radius, m, of an object that stands as high as any beam; 0: unknown, or of another kind.
+double upright_radius(const Landmark& landmark, const LandmarkType& type) {
+  const auto body = pipeline::body_index(type);
+  if (!body || (type.evidence != EvidenceModel::upright && type.evidence != EvidenceModel::canopy)) return 0;
+  const FeatureValue& size = landmark.features[body->feature];
+  return size.known() ? body->radius_per_value * size.value : 0;
+}
+
 void value_landmark(Landmark& landmark, std::span<const Observation* const> evidence,
                     std::span<const DriveLook> looks, const std::map<std::string_view, std::size_t>& by_name,
-                    const LandmarkType& type) {
+                    const LandmarkType& type, const DriveMappingOptions& options) {
   const Eigen::Vector2d at = landmark.position.xyz.head<2>();
   std::set<std::size_t> detected;
   std::vector<double> confidences;
@@ -182,10 +206,13 @@ void value_landmark(Landmark& landmark, std::span<const Observation* const> evid
     confidences.push_back(o->confidence);
     farthest = std::max(farthest, (looks[look].map_from_sensor.at() - at).norm());
   }
-  const double direction = direction_of(landmark, type);
-  int visible = 0;
-  for (std::size_t i = 0; i < looks.size(); ++i)
-    visible += detected.contains(i) || covers(looks[i], at, direction, farthest);
+  const double direction = direction_of(landmark, type), radius = upright_radius(landmark, type);
+  int visible = 0, through = 0;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    const bool is_through = !detected.contains(i) && sees_through(looks[i], at, radius, options);
+    through += is_through;
+    visible += is_through || detected.contains(i) || covers(looks[i], at, direction, farthest);
+  }
   landmark.quality.seen = static_cast<int>(detected.size());
   landmark.quality.visible = visible;
   landmark.quality.feature_confidences.assign(type.features.size(), std::nullopt);
@@ -194,6 +221,10 @@ void value_landmark(Landmark& landmark, std::span<const Observation* const> evid
         spread_confidence(landmark.features[f], type.features[f].scale, type.features[f].reference);
   landmark.confidence =
       pipeline::existence_probability(confidences, visible - landmark.quality.seen, type.existence);
+  if (through > 0) {
+    const double odds = landmark.confidence / std::max(1 - landmark.confidence, 1e-12);
+    landmark.confidence = 1 / (1 + std::exp(kSeenThrough * through) / odds);
+  }
 }
 
 /// Moves a landmark or an observation from the map frame to the CRS.
@@ -267,14 +298,34 @@ bool covers(const DriveLook& look, const Eigen::Vector2d& at, double direction, 
                                [&](const SeenLandmark& s) { return s.bearing && *s.bearing >= bearing; }) &&
            std::ranges::any_of(look.seen.sightings,
                                [&](const SeenLandmark& s) { return s.bearing && *s.bearing <= bearing; });
-  const double turn = std::remainder(bearing - scan.first_angle, 2 * std::numbers::pi);
-  for (const double angle : {turn, turn + 2 * std::numbers::pi, turn - 2 * std::numbers::pi}) {
-    const double beam = std::round(angle / scan.angle_step);
-    if (!(beam >= 0 && beam < static_cast<double>(scan.ranges.size()))) continue;
-    const auto reached = static_cast<double>(scan.ranges[static_cast<std::size_t>(beam)]);
-    return std::isfinite(reached) && reached > 0 && reached >= range - kBeamSlack;
+  const auto beam = beam_towards(scan, bearing);
+  if (!beam) return false;
+  const auto reached = static_cast<double>(scan.ranges[*beam]);
+  return std::isfinite(reached) && reached > 0 && reached >= range - kBeamSlack;
+}
+
+bool sees_through(const DriveLook& look, const Eigen::Vector2d& at, double radius,
+                  const DriveMappingOptions& options) {
+  const localization::LaserScan& scan = look.scan;
+  const Eigen::Vector2d to = at - look.map_from_sensor.at();
+  const double range = to.norm(), step = std::abs(scan.angle_step);
+  const double side = radius + 2 * std::hypot(options.position_sd, options.yaw_sd * range);
+  // Four beams cross the object: none of its parts hides between two.
+  if (!(radius > 0 && side < range / 2 && step > 0 && step * range <= radius / 2)) return false;
+  if (scan.ranges.empty() || std::abs(scan.roll) > kMaxTilt || std::abs(scan.pitch) > kMaxTilt) return false;
+  const double bearing = localization::wrap_angle(std::atan2(to.y(), to.x()) - look.map_from_sensor.yaw);
+  const double half = std::asin(side / range);
+  int beams = 0, behind = 0;
+  for (double off = -half; off <= half; off += step) {
+    const auto beam = beam_towards(scan, bearing + off);
+    if (!beam) return false;
+    ++beams;
+    const auto reached = static_cast<double>(scan.ranges[*beam]);
+    if (!(std::isfinite(reached) && reached > 0 && reached < scan.max_range)) continue;  // no return
+    if (!(reached > range + radius + kBeamSlack)) return false;
+    ++behind;
   }
-  return false;
+  return behind >= kMinReturned * beams;
 }
 
 DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types,
@@ -312,7 +363,7 @@ DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRe
   for (const Observation& o : merged.evidence)
     if (o.rejected.empty()) evidence[o.landmark_uid].push_back(&o);
   for (Landmark& landmark : merged.landmarks)
-    value_landmark(landmark, evidence[landmark.uid], looks, by_name, types[landmark.type]);
+    value_landmark(landmark, evidence[landmark.uid], looks, by_name, types[landmark.type], options);
   made.landmarks = std::move(merged.landmarks);
   for (Landmark& landmark : made.landmarks) widen_line(landmark, types[landmark.type]);
   made.evidence = std::move(merged.evidence);

@@ -48,11 +48,17 @@ struct DriveLandmarks {
 /// of an image). They are in the CRS of `frame`, that of the looks; heights are unknown.
 /// - A look covers a landmark if it detected it. So does one no farther than the farthest look that did (eq.
 ///   4), if the beam towards the landmark reaches it from the open side.
+/// - Looks through the place of an upright object count strongly against it: people and cars move on.
 DriveLandmarks landmarks_of_looks(std::span<const DriveLook> looks, const TypeRegistry& types,
                                   const LocalFrame& frame, const DriveMappingOptions& options = {});
 
 /// Returns whether a look would show a landmark at a position of the map, m, by range, angle of view and the
 /// beam towards it. `direction`: azimuth of the open side, rad; NaN: seen from all sides.
 bool covers(const DriveLook& look, const Eigen::Vector2d& at, double direction, double max_range);
+
+/// Returns whether all beams towards an upright object of a radius, m, end behind it, as far to its sides as
+/// the poses may err. False where the object could stand between two beams, and for scanners that tilt.
+bool sees_through(const DriveLook& look, const Eigen::Vector2d& at, double radius,
+                  const DriveMappingOptions& options = {});
 
 }  // namespace waymark::workflows

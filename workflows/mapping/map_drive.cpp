@@ -15,6 +15,8 @@
 #include "geodb/write_map.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
+#include "workflows/localization/log_without_landmarks.hpp"
+#include "workflows/localization/mirrored_log.hpp"
 #include "workflows/mapping/drive_landmarks.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
@@ -22,6 +24,9 @@
 
 namespace waymark::workflows {
 namespace {
+
+constexpr std::int64_t kMinRecurring = 100, kMinObjects = 10;  // sightings and objects for a comparison
+constexpr std::int64_t kFewerTenths = 8;  // of the objects as written, at most, once the sides are exchanged
 
 /// Puts the poses of a file in the place of those of the log.
 void read_poses(DriveMapRequest& request, localization::RobotLog& log) {
@@ -60,6 +65,36 @@ LocalFrame frame_of_poses(const Crs& crs, const localization::RobotLog& log) {
   return {crs, crs.kind() == CrsKind::local ? Point<MapCrs>() : Point<MapCrs>{{first.x, first.y, 0}}};
 }
 
+/// How often the beginning of a drive sees its objects again.
+struct Recurrence {
+  std::int64_t sightings = 0, objects = 0;
+};
+
+Recurrence recurrence(const localization::RobotLog& log, const std::vector<localization::StampedPose>& poses,
+                      const localization::ScanDetector& detect, const LocalFrame& frame,
+                      const DriveMappingOptions& options) {
+  const DriveLandmarks made =
+      landmarks_of_looks(looks_of_drive(log, poses, detect, "start"), all_types(), frame, options);
+  return {std::ssize(made.evidence), std::ssize(made.landmarks) + made.improbable};
+}
+
+/// Returns a warning if the sightings of the first looks fall on far fewer objects once left and right are
+/// exchanged. Empty otherwise, and with few sightings.
+std::string exchanged_sides(const localization::RobotLog& log, const localization::ScanDetector& detect,
+                            const LocalFrame& frame, const DriveMappingOptions& options) {
+  const localization::RobotLog start = beginning_of(log);
+  const Recurrence written = recurrence(start, log.truth, detect, frame, options);
+  if (written.sightings < kMinRecurring || written.objects < kMinObjects) return {};
+  const Recurrence other =
+      recurrence(mirror_log(start, MirroredPart::sensors), log.truth, detect, frame, options);
+  if (2 * other.sightings < written.sightings || 10 * other.objects >= kFewerTenths * written.objects)
+    return {};
+  return fmt::format(
+      "the scans fit the poses if left and right are exchanged in bearings and beams: the first {} sightings "
+      "are then of {} objects, as written of {}; y and bearings are positive to the left",
+      written.sightings, other.objects, written.objects);
+}
+
 }  // namespace
 
 DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callbacks) {
@@ -86,8 +121,8 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
   if (looks.empty())
     throw Error(ErrorCode::input, "no scan or sighting of the log has a known pose", request.log,
                 "are the poses of the same drive, with the same clock?");
-  DriveLandmarks made =
-      landmarks_of_looks(looks, types, frame, DriveMappingOptions{.max_range = request.max_range});
+  const DriveMappingOptions options{.max_range = request.max_range};
+  DriveLandmarks made = landmarks_of_looks(looks, types, frame, options);
   std::size_t sightings = 0;
   for (const DriveLook& look : looks) sightings += look.seen.sightings.size();
   contents.landmarks = std::move(made.landmarks);
@@ -112,6 +147,14 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
         "detector of single objects, such as --scans poles: {}",
         made.untyped, request.log));
   }
+  if (const std::string fault = unusable_ranges_warning(log); !fault.empty())
+    callbacks.warning(fault + ": " + request.log);
+  if (const std::string fault = exchanged_sides(log, detect, frame, options); !fault.empty())
+    callbacks.warning(fault + ": " + request.log);
+  if (contents.landmarks.empty())
+    callbacks.warning(fmt::format(
+        "the map is empty: the {} looks of the drive have {} sightings; --scans chooses the detectors: {}",
+        looks.size(), sightings, request.log));
   DriveMapResult result{.crs = contents.crs.id(),
                         .looks = std::ssize(looks),
                         .sightings = stage.counts.in,

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "geo/spatial_index.hpp"
@@ -104,6 +105,7 @@ Repetition measure_repetition(std::span<const Observation> observations, std::sp
   const CoverageRules sharp{.margin = 4, .min_diameter = rules.min_diameter};
   const std::size_t step = 1 + asked.size() / std::max<std::size_t>(rules.max_objects, 1);
   Repetition found;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, ImagePair> pairs;
   double matches = 0, beside = 0, places = 0;
   for (std::size_t i = 0; i < asked.size(); i += step) {
     const SeenBody& body = asked[i];
@@ -113,8 +115,12 @@ Repetition measure_repetition(std::span<const Observation> observations, std::sp
       if (other == body.object.source || !same_light(images[body.object.source], images[other]) ||
           !visible_gsd(images[other], nullptr, body.target, sharp))
         continue;
-      ++found.expected;
-      matches += shown[other].has_partner(body.object);
+      ImagePair& pair =
+          pairs.try_emplace({body.object.source, other}, ImagePair{.from = body.object.source, .to = other})
+              .first->second;
+      const bool is_matched = shown[other].has_partner(body.object);
+      ++found.expected, ++pair.expected;
+      matches += is_matched, pair.matched += is_matched;
       const std::array<Eigen::Vector2d, 4> moves{{{away, 0}, {-away, 0}, {0, away}, {0, -away}}};
       for (const Eigen::Vector2d& move : moves) {
         ObservedObject moved = body.object;
@@ -127,6 +133,7 @@ Repetition measure_repetition(std::span<const Observation> observations, std::sp
       }
     }
   }
+  for (const auto& [images_of_pair, pair] : pairs) found.pairs.push_back(pair);
   if (found.expected > 0) found.raw = matches / static_cast<double>(found.expected);
   if (places > 0) found.chance = beside / places;
   return found;

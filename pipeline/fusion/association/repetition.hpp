@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 #include "core/observation.hpp"
 #include "geo/crs.hpp"
 #include "landmarks/landmark_type.hpp"
@@ -20,12 +22,19 @@ struct RepetitionRules {
   std::size_t max_objects = 20000;
 };
 
+/// Objects of one image that another should show.
+struct ImagePair {
+  std::uint32_t from = 0, to = 0;  ///< indices of the images
+  std::size_t expected = 0, matched = 0;
+};
+
 /// How many objects of one image are found again in others: a check of poses, lenses and heights that needs
 /// no truth.
 struct Repetition {
-  std::size_t expected = 0;  ///< views of an object in which it should be seen again
-  double raw = 0;            ///< fraction of these with an object of similar size inside the gates
-  double chance = 0;         ///< the same for positions beside the object: matches by chance
+  std::size_t expected = 0;           ///< views of an object in which it should be seen again
+  double raw = 0;                     ///< fraction of these with an object of similar size inside the gates
+  double chance = 0;                  ///< the same for positions beside the object: matches by chance
+  std::vector<ImagePair> pairs = {};  ///< the views by image and other image, in the order of these
   /// Returns the fraction found again, without matches by chance; 0 if nothing is expected.
   double found() const { return chance < 1 ? (raw - chance) / (1 - chance) : 0; }
 };

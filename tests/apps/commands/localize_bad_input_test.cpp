@@ -189,6 +189,15 @@ TEST_F(LocalizeBadInput, DistanceOfThePaperIsTheWholeChain) {
   EXPECT_THAT(refusal(log, 2, {"--method", "pf", "--set", "distance=paper"}),
               AllOf(HasSubstr("weights=likelihood"), HasSubstr("--set weights=paper")));
   EXPECT_THAT(refusal(log, 2, {"--method", "slam", "--set", "distance=paper"}), HasSubstr("--method slam"));
+  for (const std::string method : {"odometry", "beacons"})
+    EXPECT_THAT(refusal(log, 2, {"--method", method, "--set", "distance=paper"}),
+                HasSubstr("--method " + method + " associates nothing by features"));
+  // alpha_f changes eq. 11, and is refused where nothing uses it.
+  EXPECT_NE(track_with({"distance=paper", "alpha=rock.radius=40"}), track_with({"distance=paper"}));
+  EXPECT_THAT(refusal(log, 2, {"--method", "ekf", "--set", "alpha=rock.radius=4"}),
+              AllOf(HasSubstr("alpha_f belongs to eq. 11"), HasSubstr("add --set distance=paper")));
+  EXPECT_THAT(refusal(log, 2, {"--method", "pf", "--set", "alpha=rock.radius=4"}),
+              HasSubstr("add --set weights=paper"));
   EXPECT_EQ(localize(log, {"--method", "pf", "--set", "distance=paper", "--set", "weights=paper"}).code, 0);
 }
 

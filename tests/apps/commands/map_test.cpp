@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Maps made from a drive with known poses.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
@@ -37,6 +40,58 @@ TEST(RealHall, IntelLabByItsOwnCornersAndEnds) {
     EXPECT_LT(score["ate_median"], 0.08) << method;
     EXPECT_LT(score["ate_rmse"], 0.25) << method;
   }
+}
+
+/// A drive through a small hall, whose scans `change` edits.
+class MadeHall : public testing::Test {
+ protected:
+  MadeHall() {
+    write_text(folder_.path() / "hall.json",
+               R"({"waymark_scenario": 1, "seed": 5, "hall": {"length": 16, "width": 10, "people": 0}})");
+    EXPECT_EQ(waymark({"simulate", folder_ / "hall.json", "-o", folder_ / "hall"}).code, 0);
+  }
+
+  std::string log(const std::function<void(nlohmann::json&)>& change) const {
+    std::ifstream lines(folder_ / "hall/log.jsonl");
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      auto record = nlohmann::json::parse(line);
+      if (record["kind"] == "laser") change(record);
+      text += record.dump() + "\n";
+    }
+    write_text(folder_.path() / "log.jsonl", text);
+    return folder_ / "log.jsonl";
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MadeHall, ScansWithLeftAndRightExchangedAreNamed) {
+  const std::string right = log([](nlohmann::json&) {});
+  const Outcome good = waymark({"map", right, "-o", folder_ / "map.gpkg"});
+  EXPECT_EQ(good.code, 0);
+  EXPECT_THAT(good.err, testing::Not(testing::HasSubstr("warning")));
+  const Outcome said =
+      waymark({"map", log([](nlohmann::json& scan) { std::ranges::reverse(scan["ranges"]); }), "-o",
+               folder_ / "m.gpkg"});
+  EXPECT_EQ(said.code, 0);
+  EXPECT_THAT(said.err, testing::HasSubstr("if left and right are exchanged in bearings and beams"));
+}
+
+TEST_F(MadeHall, RangesInMillimetresAreNamed) {
+  const std::string in_metres = log([](nlohmann::json&) {}), map = folder_ / "map.gpkg";
+  ASSERT_EQ(waymark({"map", in_metres, "-o", map}).code, 0);
+  const std::string wrong = log([](nlohmann::json& scan) {
+    for (auto& range : scan["ranges"])
+      if (range.is_number()) range = 1000 * range.get<double>();
+  });
+  const Outcome mapped = waymark({"map", wrong, "-o", folder_ / "empty.gpkg"});
+  EXPECT_THAT(mapped.err, testing::AllOf(testing::HasSubstr("ranges are metres"),
+                                         testing::HasSubstr("the map is empty: ")));
+  const Outcome localized = waymark({"localize", map, wrong, "-o", folder_ / "track.csv"});
+  EXPECT_EQ(localized.code, 0);
+  EXPECT_THAT(localized.err, testing::AllOf(testing::HasSubstr("ranges are metres"),
+                                            testing::HasSubstr("the track is dead reckoning")));
 }
 
 }  // namespace

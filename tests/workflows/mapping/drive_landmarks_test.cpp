@@ -4,11 +4,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
+#include <iostream>
 
+#include "core/atomic_file.hpp"
+#include "core/locked_folder.hpp"
 #include "core/rotate_axes.hpp"
 #include "geo/axes_rotation.hpp"
 #include "geo/point_at_height.hpp"
+#include "importers/logs/import_log.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
+#include "testbed/town/town_drive.hpp"
 #include "tests/localization/made_rooms.hpp"
 #include "workflows/registries.hpp"
 
@@ -198,6 +204,57 @@ TEST(DriveLandmarks, AreCoveredFromTheirOpenSideOnly) {
   EXPECT_TRUE(covers(look, {0, 0}, nan, 10));
   EXPECT_FALSE(covers(look, {0, 5}, nan, 10)) << "behind the partition";
   EXPECT_FALSE(covers(look, {8, 1.5}, nan, 10)) << "behind the robot";
+}
+
+TEST(DriveLandmarks, AnEmptyPlaceIsSeenThrough) {
+  const auto room = chain({{0, 0}, {8, 0}, {8, 6}, {0, 6}, {0, 0}});
+  auto look = DriveLook{.name = "a",
+                        .map_from_sensor = {1, 3, 0},
+                        .seen = {},
+                        .scan = scan_walls(room, {1, 3, 0}, 721, std::numbers::pi)};
+  EXPECT_TRUE(sees_through(look, {4, 3}, 0.2));
+  EXPECT_FALSE(sees_through(look, {7.8, 3}, 0.2)) << "it may stand at the wall";
+  EXPECT_FALSE(sees_through(look, {4, 3}, 0.01)) << "it may stand between two beams";
+  EXPECT_FALSE(sees_through(look, {0.5, 3}, 0.2)) << "behind the robot";
+  EXPECT_FALSE(sees_through(look, {1.1, 3}, 0.2)) << "at the robot";
+  EXPECT_FALSE(sees_through(look, {4, 3}, 0)) << "no body";
+  look.scan.pitch = 0.2;
+  EXPECT_FALSE(sees_through(look, {4, 3}, 0.2)) << "the beams may pass above it";
+  look.scan.pitch = 0;
+  auto with_post = room;  // 0.1 m beside the place: as far as the poses may err
+  with_post.push_back({{4, 3.12}, {4, 3.2}});
+  look.scan = scan_walls(with_post, {1, 3, 0}, 721, std::numbers::pi);
+  EXPECT_FALSE(sees_through(look, {4, 3}, 0.1));
+  look.scan = scan_walls(room, {1, 3, 0}, 721, std::numbers::pi);
+  for (float& range : look.scan.ranges) range = 0;
+  EXPECT_FALSE(sees_through(look, {4, 3}, 0.2)) << "no returns";
+}
+
+// Two people walk along the corridor, and stand at each place for one or two looks.
+TEST(DriveLandmarks, PeopleWhoWalkAreNoPillars) {
+  for (const std::uint64_t seed : {51, 52}) {
+    const testbed::Town hall = testbed::plan_hall({}, seed, seed);
+    const LockedFolder folder(std::filesystem::temp_directory_path());
+    const std::string file = (folder.path() / "log.jsonl").string();
+    write_file(file, testbed::drive_through(hall, testbed::town_settings(), seed).log);
+    RobotLog log = importers::import_log(file, all_types(), {});
+    const auto looks =
+        looks_of_drive(log, log.truth, make_laser_detector(all_types(), {.find = "pillars"}), "hall");
+    const auto made = landmarks_of_looks(looks, all_types(), LocalFrame(Crs::local(), {}));
+    int right = 0, wrong = 0;
+    for (const Landmark& l : made.landmarks)
+      ++(std::ranges::any_of(hall.landmarks,
+                             [&](const testbed::TownLandmark& t) {
+                               return t.type == "pillar" && (t.at - l.position.xyz.head<2>()).norm() < 0.3;
+                             })
+             ? right
+             : wrong);
+    std::cout << "seed " << seed << ": " << right << " pillars, " << wrong << " others, " << made.improbable
+              << " improbable\n";
+    EXPECT_GE(right, 2) << seed;
+    EXPECT_LE(wrong, 5) << seed;
+    EXPECT_GT(made.improbable, 20) << seed;
+  }
 }
 
 }  // namespace
