@@ -180,7 +180,9 @@ TEST_F(Buildings, BadInputIsRefused) {
   LazFile degrees = file_of(made_town(208, 30), {.density = 2}, 1);
   degrees.epsg = 4326;
   EXPECT_THAT(buildings({"--las", write(degrees)}).err, HasSubstr("degrees"));
-  EXPECT_THAT(buildings({"--las", write({.format = 6, .chunks = {{}}})}).err, HasSubstr("no points"));
+  LazFile noise = file_of(made_town(208, 30), {.density = 2}, 1);
+  for (RawPoint& p : noise.chunks[0]) p.classification = 7;
+  EXPECT_THAT(buildings({"--las", write(noise)}).err, HasSubstr("points are noise"));
   LazFile few{.format = 6, .chunks = {{}}};
   for (int i = 0; i < 20; ++i) few.chunks[0].push_back({.at = {10000 * i, 7000 * (i % 5), 100 * i}});
   EXPECT_THAT(buildings({"--las", write(few)}).err, HasSubstr("no point is classified as ground"));
