@@ -21,6 +21,7 @@ set(alone
   pipeline/engine/job.cpp pipeline/engine/report.cpp pipeline/engine/store/artifact_store.cpp
   pipeline/forest/canopy_model.cpp pipeline/fusion/cleaning/rim_shadows.cpp pipeline/fusion/projection/crest_correction.cpp pipeline/fusion/projection/image_view_codec.cpp
   pipeline/fusion/valuation/landmark_valuation.cpp pipeline/vision/opencv_version.cpp
+  tests/apps/commands/buildings_test.cpp tests/geo/outline_shapes_test.cpp
   testbed/landing/crater_field.cpp testbed/landing/crater_profile.cpp
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp
   tests/apps/commands/area_of_interest_test.cpp tests/exporters/vector/track_file_test.cpp tests/workflows/planning/sight_terrain_test.cpp

@@ -12,8 +12,9 @@ class Trees final : public Shortcut {
                   "trees_from_canopy.isolation_base", "trees_from_canopy.isolation_slope",
                   "trees_from_canopy.prominence", "trees_from_canopy.smoothing",
                   "trees_from_canopy.max_crown_radius", "trees_from_canopy.allometry",
-                  "trees_from_canopy.species", "load_canopy.resolution", "load_canopy.forest_type",
-                  "load_canopy.crs", "load_canopy.aoi", "load_canopy.tile_cells", "load_canopy.memory"}) {}
+                  "trees_from_canopy.species", "trees_from_canopy.roofs", "load_canopy.resolution",
+                  "load_canopy.forest_type", "load_canopy.crs", "load_canopy.aoi", "load_canopy.tile_cells",
+                  "load_canopy.memory"}) {}
 
  private:
   CommandSpec describe_own() override {

@@ -128,11 +128,13 @@ void load_job_file(const std::string& dem) {
 void choose_stages(const std::string& dem) {
   //! [stages]
   pipeline::Pipeline tops(workflows::all_stages()), craters(workflows::all_stages()),
-      trees(workflows::all_stages());
+      trees(workflows::all_stages()), town(workflows::all_stages());
   workflows::add_mountain_top_stages(tops, {dem});
   workflows::add_name_stage(tops, {"gazetteer.gpkg"});  // as `waymark peaks --names gazetteer.gpkg`
   workflows::add_crater_stages(craters, {dem});         // as `waymark craters --dem`
   workflows::add_tree_stages(trees, {.chm = {dem}});    // as `waymark trees --chm`
+  const workflows::TownParts parts{.poles = true, .trees = false};
+  workflows::add_building_stages(town, {.las = {"tiles"}}, parts);  // as `waymark buildings --las tiles`
   std::cout << pipeline::job_as_json("trees", trees) << '\n';
   //! [stages]
 }

@@ -147,7 +147,9 @@ LasCatalogue::Points LasCatalogue::points_of(std::size_t run) const {
 void LasCatalogue::visit(const LasBox& box, const std::function<void(const LasPoint&)>& use) const {
   for (std::size_t run = 0; run < runs_.size(); ++run) {
     if (!runs_[run].box.intersects(box)) continue;
-    for (const LasPoint& p : *points_of(run))
+    const Points points =
+        points_of(run);  // held here: another thread may keep its own copy, or drop this one
+    for (const LasPoint& p : *points)
       if (is_usable(p) && p.x >= box.left && p.x <= box.right && p.y >= box.low && p.y <= box.high) use(p);
   }
 }

@@ -14,6 +14,8 @@ namespace {
 constexpr double kFlat = 8 * std::numbers::pi / 180;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kSample = 0.5;  // m along walls
+// m2, of rasters: nothing but its facets distinguishes a smooth crown from a roof.
+constexpr double kMinLargestPlane = 20, kMinMeanPlane = 12;
 
 double cell_area(const RoofCells& cells) {
   return cells.width * cells.height;
@@ -25,7 +27,8 @@ struct RoofEvidence {
   double classed = 0;         // fraction of returns classified as building
   double plant = 0;           // fraction classified as vegetation
   double plane_area = 0;      // of the largest plane, m2
-  double rms = 0;             // of the planes, by area
+  double mean_plane_area = 0;
+  double rms = 0;  // of the planes, by area
 };
 
 RoofEvidence weigh(const RoofCells& cells, const RoofRegion& region) {
@@ -53,6 +56,7 @@ RoofEvidence weigh(const RoofCells& cells, const RoofRegion& region) {
     evidence.rms += own * region.planes[p].rms, area += own;
   }
   evidence.rms /= area;
+  evidence.mean_plane_area = area / static_cast<double>(region.planes.size());
   return evidence;
 }
 
@@ -262,6 +266,9 @@ class Search {
     if (evidence.plant > 0.5) return reject("classified as vegetation", cells, first);
     if (evidence.penetration > rules_.max_penetration)
       return reject("pulses pass it: vegetation", cells, first);
+    if (!(cells.density > 0) &&
+        (evidence.plane_area < kMinLargestPlane || evidence.mean_plane_area < kMinMeanPlane))
+      return reject("small planes in a raster: vegetation", cells, first);
     std::vector<SurfacePoint> returns;
     const Window around = roof_surroundings(cells, region);
     canopy_.visit_surface(around, [&](const SurfacePoint& p) {

@@ -12,10 +12,14 @@ constexpr double kSide = 0.5;  // m
 // Metres, and times the side of a cell: a roof of 60 degrees falls by less within a cell.
 constexpr double kBelowTop = 0.5, kBelowTopPerSide = 2;
 
+// Of a cell; more are a damaged file, and sums of them would overflow.
+constexpr std::int32_t kMaxReturns = 1'000'000;
+
 void add(CellSums& sums, double dx, double dy, double dz) {
+  if (sums.count >= kMaxReturns) return;
   const auto x = std::llround(dx * 1000), y = std::llround(dy * 1000), z = std::llround(dz * 1000);
   ++sums.count;
-  sums.x += x, sums.y += y, sums.z += z;
+  sums.x += static_cast<std::int32_t>(x), sums.y += static_cast<std::int32_t>(y), sums.z += z;
   sums.xx += x * x, sums.xy += x * y, sums.yy += y * y;
   sums.xz += x * z, sums.yz += y * z, sums.zz += z * z;
 }

@@ -10,7 +10,8 @@ namespace waymark::pipeline {
 /// Integer sums of laser returns about the centre of a cell; x, y, z in mm. Exact, so the order of the
 /// returns does not matter.
 struct CellSums {
-  std::int64_t count = 0, x = 0, y = 0, z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
+  std::int32_t count = 0, x = 0, y = 0;
+  std::int64_t z = 0, xx = 0, xy = 0, yy = 0, xz = 0, yz = 0, zz = 0;
 };
 
 /// What the returns of a cell say of roofs.

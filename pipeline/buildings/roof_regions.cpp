@@ -9,9 +9,10 @@
 namespace waymark::pipeline {
 namespace {
 
-// Half the side of the neighbourhood of a cell, m. A wide one is needed for few returns, and for rasters,
-// whose crowns are smooth; near ridges and narrow roofs a small one has more smooth cells.
-constexpr double kReach = 1.25, kReachOfDense = 0.75;
+// Half the side of the neighbourhood of a cell, m. Few returns need a wide one. Rasters need a wider one:
+// crowns are smooth in them, but their tops, spheres of 5 m radius, depart from a plane by 0.26 m over 5 m.
+// Near ridges and on narrow roofs a small one has more smooth cells.
+constexpr double kReach = 1.25, kReachOfDense = 0.75, kReachOfRaster = 2.5;
 constexpr double kDense = 5;  // first returns per m2
 constexpr std::int64_t kMinDilation =
     2;                               // cells: the rough ridge lies between the smooth cells of both sides
@@ -23,7 +24,7 @@ constexpr int kBesideEmpty = 3;      // of eight neighbours of a cell without re
 constexpr std::int32_t kNone = -1;
 
 std::int64_t reach_of(const RoofCells& cells) {
-  const double reach = cells.density >= kDense ? kReachOfDense : kReach;
+  const double reach = cells.density >= kDense ? kReachOfDense : cells.density > 0 ? kReach : kReachOfRaster;
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(reach / std::max(cells.width, cells.height)));
 }
 

@@ -9,7 +9,7 @@ namespace waymark::pipeline {
 struct RoofRules {
   double min_height = 2.5;       ///< of a return above the ground
   double min_area = 12;          ///< of a building's footprint
-  double max_extent = 250;       ///< of a connected group of roofs along the axes of the grid
+  double max_extent = 150;       ///< of a connected group of roofs along the axes of the grid
   double roughness = 0.15;       ///< root mean square distance of the returns from their plane
   double min_plane_area = 4;     ///< of a plane
   double max_penetration = 0.3;  ///< fraction of pulses that pass a roof or split on it; trees have more

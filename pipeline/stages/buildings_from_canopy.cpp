@@ -12,7 +12,7 @@ struct BuildingsFromCanopy {
   struct Options {
     RoofRules roofs;
     WallRules walls;
-    Meters min_height{2.5}, max_extent{250}, roughness{0.15}, min_wall{2}, overhang{0}, overhang_sd{0.3},
+    Meters min_height{2.5}, max_extent{150}, roughness{0.15}, min_wall{2}, overhang{0}, overhang_sd{0.3},
         survey_sd{0.1};
 
     void describe(OptionVisitor& option) {

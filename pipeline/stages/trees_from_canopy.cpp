@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "core/text_file.hpp"
 #include "landmarks/landmark_type.hpp"
+#include "pipeline/buildings/find_buildings.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/tree_observations.hpp"
@@ -11,7 +12,7 @@ namespace {
 
 struct TreesFromCanopy {
   struct Options {
-    std::string preset = "mixed", method = "peaks", allometry, species;
+    std::string preset = "mixed", method = "peaks", allometry, species, roofs = "keep";
     Meters min_height{3};
     double isolation_base = -1, isolation_slope = -1, prominence = -1, smoothing = -1, max_crown_radius = -1;
     bool crowns = true;
@@ -52,6 +53,12 @@ struct TreesFromCanopy {
       option("species", species,
              {.help = "Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), "
                       "else all"});
+      option(
+          "roofs", roofs,
+          {.help =
+               "remove: leave out tops on roofs, as `waymark buildings` finds them; keep: a canopy without "
+               "houses needs no search",
+           .choices = {"keep", "remove"}});
     }
   };
   static constexpr In<Canopies> canopies{"canopies"};
@@ -61,7 +68,7 @@ struct TreesFromCanopy {
   static StageSpec spec() {
     return {.name = "trees_from_canopy",
             .summary = "Finds treetops and crowns in canopy models; stem diameters by allometry",
-            .version = 4,
+            .version = 5,
             .scope = Scope::tile,
             .inputs = {canopies},
             .outputs = {observations, seen_crowns},
@@ -110,7 +117,12 @@ struct TreesFromCanopy {
     for (const auto& canopy : surveys) {
       const Window owned = tile_window(canopy->geometry(), common, unit.tile().cells);
       const std::uint32_t survey = outlines.add_survey(*canopy);
-      for (const DetectedTree& tree : find_trees(*canopy, owned, search)) {
+      std::vector<DetectedTree> trees = find_trees(*canopy, owned, search);
+      if (options.roofs == "remove") {
+        unit.count_in(static_cast<std::int64_t>(trees.size()));
+        unit.reject("top on a roof", remove_on_roofs(trees, *canopy, owned));
+      }
+      for (const DetectedTree& tree : trees) {
         const std::string forest = forest_type(tree, *canopy, options);
         seen.push_back(observation_of(tree, *canopy, types[id], id, table,
                                       options.species.empty() ? forest : options.species,
@@ -123,6 +135,25 @@ struct TreesFromCanopy {
     outlines.shrink_to_fit();
     unit.write(observations, std::move(seen));
     unit.write(seen_crowns, std::move(outlines));
+  }
+
+  /// Returns the number of trees removed.
+  static std::int64_t remove_on_roofs(std::vector<DetectedTree>& trees, const CanopySource& canopy,
+                                      const Window& owned) {
+    constexpr double kEdge = 0.5;  // m: cells of the canopy model at the edge of a roof
+    const FoundBuildings found = find_buildings(canopy, owned, {});
+    const Georeference& where = canopy.geometry().where;
+    const double unit = where.crs.metres_per_unit();
+    return static_cast<std::int64_t>(std::erase_if(trees, [&](const DetectedTree& tree) {
+      const Eigen::Vector2d at(static_cast<double>(tree.top.column) * where.dx * unit,
+                               static_cast<double>(tree.top.row) * where.dy * unit);
+      return std::ranges::any_of(found.buildings, [&](const DetectedBuilding& building) {
+        return building.box.column - 2 <= tree.top.column &&
+               tree.top.column < building.box.end_column() + 2 && building.box.row - 2 <= tree.top.row &&
+               tree.top.row < building.box.end_row() + 2 && tree.height < building.height + 1 &&
+               is_on(building, at, kEdge);
+      });
+    }));
   }
 
   static std::string forest_type(const DetectedTree& tree, const CanopySource& canopy,

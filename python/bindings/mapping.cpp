@@ -91,13 +91,16 @@ py::tuple run(const std::string& job_file, const std::string& folder,
                         made.exit_code());
 }
 
-/// Returns the job of a shortcut ("peaks", "craters" or "trees") as JSON with every option filled in.
+/// Returns the job of a shortcut ("peaks", "craters", "trees" or "buildings", with poles and trees) as JSON
+/// with every option filled in.
 std::string shortcut_job(const std::string& command, const std::vector<std::string>& files,
                          const py::dict& canopy) {
   pipeline::Pipeline stages(workflows::all_stages());
   if (command == "peaks") workflows::add_mountain_top_stages(stages, files);
   if (command == "craters") workflows::add_crater_stages(stages, files);
   if (command == "trees") workflows::add_tree_stages(stages, canopy_keywords().request(canopy));
+  if (command == "buildings")
+    workflows::add_building_stages(stages, canopy_keywords().request(canopy), {.poles = true, .trees = true});
   return pipeline::job_as_json(command, stages);
 }
 

@@ -902,6 +902,14 @@ def evaluate_track(track: Any, truth: Any, *, drive: Any = ..., align: _Path = .
         also: NAME=TRACK.csv: more tracks of the picture"""
     ...
 
+def find_buildings(las: Any = ..., *, dsm: Any = ..., dtm: Any = ..., chm: Any = ..., poles: Any = ..., trees: Any = ..., output: Any = ..., transform: Any = ..., crs: Any = ..., cell: Any = ..., progress: Any = ..., **options: Any) -> Any:
+    """Returns the buildings of a town, as `waymark buildings`; walls, corners, poles and outlines are in its map.
+
+    las is a file of laser points, a folder or a list, with or without dtm; or else give dsm and dtm, or chm. Without
+    `poles` none are searched; with `trees` those that are not on roofs are mapped, too. Other arguments as for
+    `find_mountain_tops`. Options: min_area, max_extent, roughness, overhang, ..."""
+    ...
+
 def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the craters of an image: see `detect`.
 

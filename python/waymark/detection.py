@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Detectors: rocks, craters and trees in images; mountain tops, craters and trees in rasters of heights."""
+"""Detectors: rocks, craters and trees in images; mountain tops, craters, trees and buildings in heights."""
 
 import csv
 import difflib
@@ -67,8 +67,9 @@ def _with_options(job, options):
     return job
 
 
-def _shortcut(command, files, canopy, output, progress, options):
+def _shortcut(command, files, canopy, output, progress, options, without=()):
     job = json.loads(_waymark.shortcut_job(command, files, canopy))
+    job["stages"] = [stage for stage in job["stages"] if stage["stage"] not in without]
     _with_options(job, options)
     if output is not None:
         return run(job, output, progress=progress).map
@@ -76,7 +77,7 @@ def _shortcut(command, files, canopy, output, progress, options):
         return run(job, os.path.join(folder, "map.gpkg"), progress=progress).map.landmarks(_FOUND[command])
 
 
-_FOUND = {"peaks": "mountain_top", "craters": "crater", "trees": "tree"}
+_FOUND = {"peaks": "mountain_top", "craters": "crater", "trees": "tree", "buildings": "building"}
 
 
 def find_mountain_tops(dem, *, output=None, transform=None, crs=None, cell=1.0, progress=None, **options):
@@ -106,15 +107,30 @@ def find_trees(chm=None, *, dsm=None, dtm=None, las=None, flights=None, crowns=N
     given = {name: raster for name, raster in (("chm", chm), ("dsm", dsm), ("dtm", dtm)) if raster is not None}
     canopy = keywords(las=las, flights=flights, crowns=crowns)
     options = _crs_of_array(options, crs, *given.values())
-    return _find_trees(given, canopy, (transform, crs, cell), output, progress, options)
+    return _find_in_canopy("trees", given, canopy, (transform, crs, cell), output, progress, options)
 
 
-def _find_trees(given, canopy, place, output, progress, options):
+def find_buildings(las=None, *, dsm=None, dtm=None, chm=None, poles=True, trees=False, output=None, transform=None,
+                   crs=None, cell=1.0, progress=None, **options):
+    """Returns the buildings of a town, as `waymark buildings`; walls, corners, poles and outlines are in its map.
+
+    las is a file of laser points, a folder or a list, with or without dtm; or else give dsm and dtm, or chm. Without
+    `poles` none are searched; with `trees` those that are not on roofs are mapped, too. Other arguments as for
+    `find_mountain_tops`. Options: min_area, max_extent, roughness, overhang, ...
+    """
+    given = {name: raster for name, raster in (("chm", chm), ("dsm", dsm), ("dtm", dtm)) if raster is not None}
+    without = (() if poles else ("poles_from_points",)) + (() if trees else ("trees_from_canopy", "trees_of_survey"))
+    options = _crs_of_array(options, crs, *given.values())
+    return _find_in_canopy("buildings", given, keywords(las=las), (transform, crs, cell), output, progress, options,
+                           without)
+
+
+def _find_in_canopy(command, given, canopy, place, output, progress, options, without=()):
     if not given:
-        return _shortcut("trees", [], canopy, output, progress, options)
+        return _shortcut(command, [], canopy, output, progress, options, without)
     name, raster = given.popitem()
     with raster_files(raster, *place) as files:
-        return _find_trees(given, {**canopy, name: files}, place, output, progress, options)
+        return _find_in_canopy(command, given, {**canopy, name: files}, place, output, progress, options, without)
 
 
 @takes("images", more=True)

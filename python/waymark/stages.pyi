@@ -12,6 +12,20 @@ def align_images(*, enabled: bool = ..., max_images: int = ..., wrong_geometry: 
     wrong_geometry: What happens if objects of one image are hardly found again in others (one of refuse, warn)"""
     ...
 
+def buildings_from_canopy(*, min_height: float = ..., min_area: float = ..., max_extent: float = ..., roughness: float = ..., min_confidence: float = ..., min_wall: float = ..., overhang: float = ..., overhang_sd: float = ..., survey_sd: float = ...) -> dict[str, Any]:
+    """Finds roofs in laser points or a surface model: buildings, their walls and corners.
+
+    min_height [m]: Lowest roof above the ground (at least 1, at most 50)
+    min_area: Smallest footprint kept, m2 (at least 4, at most 100000)
+    max_extent [m]: Widest connected group of roofs; wider ones are rejected. Tiles read this far around (at least 20, at most 2000)
+    roughness [m]: Root mean square distance of returns from the plane of their roof; more is vegetation (at least 0.02, at most 1)
+    min_confidence: Roofs less probable than this are rejected (at least 0, at most 1)
+    min_wall [m]: Shortest wall kept as a landmark (at least 0.5, at most 100)
+    overhang [m]: Distance of the eaves from the walls: walls and corners are moved in by it (at least 0, at most 3)
+    overhang_sd [m]: Standard deviation of the overhang, part of that of walls and corners (at least 0, at most 3)
+    survey_sd [m]: Horizontal standard deviation of the survey as a whole (at least 0, at most 10)"""
+    ...
+
 def check_sun(*, tolerance: float = ..., max_pixels: int = ...) -> dict[str, Any]:
     """Compares the given sun with the shadows in each image and warns where they disagree.
 
@@ -63,7 +77,7 @@ def join_mountain_tops(*, base: str = ...) -> dict[str, Any]:
     base: Reference of the highest summit of each land mass: elevation 0 (sea), the lowest cell, or none; auto: sea if the highest cell lies above 0 (one of auto, sea, lowest, none)"""
     ...
 
-def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = ..., las: list[str] = ..., resolution: float = ..., flights: bool = ..., forest_type: str = ..., crs: str = ..., aoi: str = ..., tile_cells: int = ..., memory: int = ...) -> dict[str, Any]:
+def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = ..., las: list[str] = ..., resolution: float = ..., ground_square: float = ..., flights: bool = ..., forest_type: str = ..., crs: str = ..., aoi: str = ..., tile_cells: int = ..., memory: int = ...) -> dict[str, Any]:
     """Opens canopy height models, or surface and terrain models, and cuts them into tiles.
 
     chm: Canopy height models: heights above ground
@@ -71,6 +85,7 @@ def load_canopy(*, chm: list[str] = ..., dsm: list[str] = ..., dtm: list[str] = 
     dtm: Terrain models under the surface models or the laser points, on any grid
     las: LAS, LAZ or COPC files, instead of chm: one catalogue of laser points, with classified ground (class 2) or with dtm
     resolution [m]: Cell size of the canopy made from laser points; 0: by their density (at least 0, at most 20)
+    ground_square [m]: Side of the squares whose lowest points begin the ground where none is classified: wider than the widest roof or crown (at least 5, at most 500)
     flights: Each file of chm (of dsm, of las) is a separate survey: trees found in several are merged. Otherwise the files make one canopy; where they overlap the first one has priority
     forest_type: Raster of forest types, which select the preset for finding treetops: 1 conifer, 2 broadleaf, 3 mixed
     crs: Coordinate reference system instead of the files' own; local: metres on no body
@@ -162,6 +177,17 @@ def mountain_tops_of_tile(*, min_isolation: float = ..., visible_range: float = 
     visible_range [m]: Radius around a summit over which its expected visibility is averaged (at least 1, at most 1e+06)"""
     ...
 
+def poles_from_points(*, min_density: float = ..., min_pole_height: float = ..., max_width: float = ..., clearance: float = ..., min_returns: int = ..., pole_survey_sd: float = ...) -> dict[str, Any]:
+    """Finds poles in airborne laser points where their density allows it.
+
+    min_density: First returns per m2 below which no poles are searched, with a warning (at least 0, at most 1000)
+    min_pole_height [m]: Lowest pole kept (at least 1.5, at most 40)
+    max_width [m]: Widest pole, with its lamp (at least 0.2, at most 3)
+    clearance [m]: Distance from a pole to all else that is higher than 1 m (at least 0.3, at most 5)
+    min_returns: Fewest returns of a pole (at least 3, at most 1000)
+    pole_survey_sd [m]: Horizontal standard deviation of the survey as a whole (at least 0, at most 10)"""
+    ...
+
 def project_to_ground(*, height_sd: float = ..., slope_sd: float = ..., outline_edge_fraction: float = ..., shadow_shape: float = ..., rim_shape: float = ..., min_crater_confidence: float = ..., register_to_dem: bool = ...) -> dict[str, Any]:
     """Projects detections onto the DEM, with covariances and footprints.
 
@@ -207,7 +233,7 @@ def rocks_from_shadows(*, method: str = ..., min_diameter: float = ..., max_diam
     blur: Standard deviation of the camera's point spread, in pixels; 0: unknown, uses 0.6 (at least 0, at most 5)"""
     ...
 
-def trees_from_canopy(*, preset: str = ..., method: str = ..., min_height: float = ..., isolation_base: float = ..., isolation_slope: float = ..., prominence: float = ..., smoothing: float = ..., crowns: bool = ..., max_crown_radius: float = ..., allometry: str = ..., species: str = ...) -> dict[str, Any]:
+def trees_from_canopy(*, preset: str = ..., method: str = ..., min_height: float = ..., isolation_base: float = ..., isolation_slope: float = ..., prominence: float = ..., smoothing: float = ..., crowns: bool = ..., max_crown_radius: float = ..., allometry: str = ..., species: str = ..., roofs: str = ...) -> dict[str, Any]:
     """Finds treetops and crowns in canopy models; stem diameters by allometry.
 
     preset: Parameters for a type of forest; see docs/methods/trees.md (one of conifer, broadleaf, mixed)
@@ -220,7 +246,8 @@ def trees_from_canopy(*, preset: str = ..., method: str = ..., min_height: float
     crowns: Outline the crowns; without them trees have no crown diameter
     max_crown_radius: Largest distance of a crown's edge from its top, metres; -1: as the preset (at least -1, at most 40)
     allometry: CSV table that gives stem diameters, as `waymark allometry fit` writes; empty: Jucker et al. 2017
-    species: Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), else all"""
+    species: Row of the allometry table; empty: the type of forest (conifer, broadleaf, mixed), else all
+    roofs: remove: leave out tops on roofs, as `waymark buildings` finds them; keep: a canopy without houses needs no search (one of keep, remove)"""
     ...
 
 def trees_of_survey() -> dict[str, Any]:

@@ -129,3 +129,14 @@ def test_a_bowl_in_a_dem_array_is_a_crater(tmp_path):
     assert craters["x"][0] == pytest.approx(80, abs=2) and craters["y"][0] == pytest.approx(-100, abs=2)
     assert craters["radius"][0] == pytest.approx(30, rel=0.15)
     assert_same_as_csv(craters, program("query", tmp_path / "craters.gpkg", "--type", "crater", "--format", "csv"))
+
+
+def test_buildings_of_an_array_of_heights(tmp_path):
+    heights = np.zeros((200, 240), np.float32)
+    heights[40:72, 50:90] = 6  # 16 m by 20 m on cells of 0.5 m
+    heights[120:144, 150:190] = np.linspace(3, 6, 24)[:, None]
+    buildings = waymark.find_buildings(chm=heights, cell=0.5, poles=False)
+    assert sorted(round(float(h)) for h in buildings["height"]) == [6, 6]
+    map = waymark.find_buildings(chm=heights, cell=0.5, poles=False, output=tmp_path / "town.gpkg")
+    assert len(map.landmarks("wall_corner")) == 8
+    assert len(map.landmarks("wall")) == 8

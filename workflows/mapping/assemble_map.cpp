@@ -13,11 +13,13 @@
 
 #include "geo/canopy_source.hpp"
 #include "geo/dem_handle.hpp"
+#include "pipeline/buildings/building_outline.hpp"
 #include "pipeline/forest/crown_table.hpp"
 #include "pipeline/forest/survey_outline.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
 #include "workflows/mapping/crown_layer.hpp"
+#include "workflows/mapping/footprint_layer.hpp"
 #include "workflows/mapping/summit_layers.hpp"
 #include "workflows/mapping/summit_names.hpp"
 
@@ -68,10 +70,10 @@ std::string cell_count(double cells) {
   return cells < 1e6 ? fmt::format("{} cells", cells) : fmt::format("{:.4g} M cells", cells / 1e6);
 }
 
-/// Returns the ground that was searched for trees. An inventory of the map needs it.
-geodb::ShapeLayer survey_layer(const Canopies& canopies) {
+/// Returns the ground that was searched. An inventory of the map's trees needs it.
+geodb::ShapeLayer survey_layer(const Canopies& canopies, const char* what) {
   geodb::ShapeLayer layer{.name = "survey",
-                          .summary = "Ground that was searched for trees",
+                          .summary = std::string("Ground that was searched for ") + what,
                           .kind = geodb::ShapeKind::polygon,
                           .columns = {{"source", "", AttributeSpec::Kind::text, "Canopy models"}},
                           .style = {.colour = "#546e7a", .width = 0.4}};
@@ -157,7 +159,8 @@ bool has_all_landmarks(const pipeline::Pipeline& pipeline, const pipeline::RunRe
 }
 
 std::vector<std::string> map_artifacts() {
-  return {"dem", "landmarks", "evidence", "rejected", "crowns", "canopies", "image_views", "place_names"};
+  return {"dem",        "landmarks", "evidence",    "rejected",   "crowns",
+          "footprints", "canopies",  "image_views", "place_names"};
 }
 
 geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry& types, geodb::RunRecord run,
@@ -177,11 +180,18 @@ geodb::MapContents assemble_map(pipeline::RunResult& result, const TypeRegistry&
   for (pipeline::CrownTable& table : result.take<pipeline::CrownTable>("crowns"))
     tables.push_back(
         [held = std::make_shared<const pipeline::CrownTable>(std::move(table))] { return held; });
+  auto outlines = take_all_readers<std::vector<pipeline::BuildingOutline>>(result, "footprints");
+  std::vector<pipeline::BuildingOutline> footprints =
+      concatenate(result.take<std::vector<pipeline::BuildingOutline>>("footprints"));
+  const bool is_town = !outlines.empty() || !footprints.empty();
+  for (const auto& read : outlines) std::ranges::copy(*read(), std::back_inserter(footprints));
+  const char* const searched = !is_town ? "trees" : tables.empty() ? "buildings" : "buildings and trees";
   for (const auto& surveys : result.artifacts<Canopies>("canopies")) {
-    contents.layers.push_back(survey_layer(*surveys));
+    contents.layers.push_back(survey_layer(*surveys, searched));
     for (const auto& canopy : *surveys) contents.images.push_back(image_record(canopy_view(*canopy)));
   }
   if (!tables.empty()) contents.layers.push_back(crown_layer(std::move(tables)));
+  if (is_town) contents.layers.push_back(footprint_layer(std::move(footprints)));
   for (geodb::ShapeLayer& layer : summit_layers(contents)) contents.layers.push_back(std::move(layer));
   for (const auto& made : result.artifacts<std::vector<pipeline::ImageView>>("image_views"))
     for (const pipeline::ImageView& image : *made) contents.images.push_back(image_record(image));

@@ -88,6 +88,15 @@ void require_metric_dem(pipeline::Pipeline& pipeline) {
   if (has("load_dem") && has("load_images")) pipeline.set("load_dem.metric=true");
 }
 
+nlohmann::json canopy_options(const CanopyFiles& canopy) {
+  return {{"chm", canopy.chm},
+          {"dsm", canopy.dsm},
+          {"dtm", canopy.dtm},
+          {"las", importers::find_las_files(canopy.las)},
+          {"flights", canopy.flights}};
+}
+
+constexpr double kGroundSquareOfTowns = 60;                     // m: wider than most roofs
 constexpr std::size_t kScratchInMemory = std::size_t{4} << 20;  // bytes of each stage's results
 
 }  // namespace
@@ -112,12 +121,7 @@ void add_crater_stages(pipeline::Pipeline& pipeline, const std::vector<std::stri
 
 void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy) {
   check_files(canopy);
-  pipeline.add("load_canopy", nlohmann::json{{"chm", canopy.chm},
-                                             {"dsm", canopy.dsm},
-                                             {"dtm", canopy.dtm},
-                                             {"las", importers::find_las_files(canopy.las)},
-                                             {"flights", canopy.flights}}
-                                  .dump());
+  pipeline.add("load_canopy", canopy_options(canopy).dump());
   pipeline.add("trees_from_canopy", nlohmann::json{{"crowns", canopy.crowns}}.dump());
   if (!canopy.flights) {
     pipeline.add("trees_of_survey");
@@ -125,6 +129,18 @@ void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy) {
   }
   pipeline.add("merge_observations", nlohmann::json{{"overlap", 0.1}}.dump());
   pipeline.add("value_flights");
+}
+
+void add_building_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy, const TownParts& parts) {
+  check_files(canopy);
+  nlohmann::json load = canopy_options(canopy);
+  load["ground_square"] = kGroundSquareOfTowns;
+  pipeline.add("load_canopy", load.dump());
+  pipeline.add("buildings_from_canopy");
+  if (parts.poles) pipeline.add("poles_from_points");
+  if (!parts.trees) return;
+  pipeline.add("trees_from_canopy", nlohmann::json{{"roofs", "remove"}}.dump());
+  pipeline.add("trees_of_survey");
 }
 
 pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& callbacks) {

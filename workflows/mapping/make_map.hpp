@@ -30,6 +30,16 @@ struct CanopyFiles {
 /// Appends the stages that find the trees of a canopy. Throws Error{usage} where the files make no canopy.
 void add_tree_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy);
 
+/// What is found in a town besides buildings.
+struct TownParts {
+  bool poles = true;
+  bool trees = false;  ///< those not on roofs
+};
+
+/// Appends the stages that find buildings, their walls and corners, and the other parts of a town. Throws
+/// Error{usage} where the files make no canopy.
+void add_building_stages(pipeline::Pipeline& pipeline, const CanopyFiles& canopy, const TownParts& parts);
+
 /// How a job is run and where its map is written.
 struct MapRequest {
   std::string map = {};           ///< output; empty: none, only the work folder grows

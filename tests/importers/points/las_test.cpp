@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gmock/gmock.h>
 
+#include <barrier>
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <thread>
 
 #include "core/random.hpp"
 #include "importers/points/canopy.hpp"
@@ -102,6 +104,7 @@ TEST(Las, EveryPointFormatIsRead) {
     EXPECT_NEAR(points[0].z, 310.125, 1e-6);
     EXPECT_EQ(points[0].classification, 2);
     EXPECT_EQ(points[1].return_number, 2);
+    EXPECT_EQ(points[1].return_count, 2);
     EXPECT_EQ(points[2].classification, 18);
     EXPECT_TRUE(points[3].withheld);
     EXPECT_FALSE(points[0].withheld);
@@ -137,6 +140,27 @@ TEST(Las, SaysWhatIsWrong) {
   const auto half = write_text("half.las", std::string("LASF") + std::string(100, '\0'));
   EXPECT_THAT(message_of([&] { importers::import_canopy({.las = {half}}); }),
               HasSubstr("ends within its header"));
+}
+
+// Of threads that decode a run at once, one keeps it for the others; all must read their own to its end.
+TEST(Las, ManyThreadsVisitOneRun) {
+  LasFile las;
+  for (int i = 0; i < 30000; ++i)
+    las.points.push_back({500000 + 0.001 * (i % 1000), 5000000 + 0.001 * (i / 1000.0), 300, 1, 1, false});
+  const std::string path = written(las);
+  for (int trial = 0; trial < 20; ++trial) {
+    const importers::LasCatalogue catalogue({path}, 1 << 20);
+    std::barrier start(6);
+    std::vector<std::uint64_t> seen(6, 0);
+    std::vector<std::jthread> threads;
+    for (std::uint64_t& count : seen)
+      threads.emplace_back([&] {
+        start.arrive_and_wait();
+        catalogue.visit(catalogue.box(), [&](const importers::LasPoint& p) { count += p.z == 300; });
+      });
+    threads.clear();
+    for (const std::uint64_t count : seen) EXPECT_EQ(count, las.points.size());
+  }
 }
 
 TEST(Las, PointsFarApartAreRefusedRatherThanGridded) {

@@ -286,7 +286,7 @@ std::vector<LasPoint> points_by_formula(int format) {
     // User data, time, colours and waveforms.
     for (int skipped = (i % 40 == 0) + (i % 71 == 0) + 4 + 28; skipped > 0; --skipped) draw();
     points.push_back({500000 + 0.01 * x, 5000000 + 0.01 * y, 0.01 * z, static_cast<std::uint8_t>(type),
-                      static_cast<std::uint8_t>(number), i % 50 == 0});
+                      static_cast<std::uint8_t>(number), i % 50 == 0, static_cast<std::uint8_t>(returns)});
   }
   return points;
 }

@@ -3,8 +3,11 @@
 
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <tuple>
 
+#include "importers/points/canopy.hpp"
+#include "pipeline/buildings/find_poles.hpp"
 #include "tests/pipeline/buildings/town_score.hpp"
 #include "tests/pipeline/forest/synthetic_canopy.hpp"
 
@@ -234,6 +237,31 @@ TEST(FindBuildingsInRasters, HousesAreFoundAndCrownsAreNot) {
   EXPECT_GE(matched, int(0.9 * double(town.houses.size())));
   EXPECT_LE(int(found.buildings.size()) - matched, 1);
   EXPECT_GE(iou / matched, 0.85);
+}
+
+/// Forests measured by laser, without a house: every building is false.
+TEST(FindBuildingsInRealForests, ThereAreFewOrNone) {
+  const std::filesystem::path folder = std::filesystem::path(WAYMARK_SOURCE_DIR) / "../shared/data/forest";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no data of real forests";
+  std::size_t all = 0;
+  for (const char* name : {"lidr/MixedConifer.las", "lidr/Megaplot.las", "lidr/Topography.las",
+                           "neon/SJER_052.las", "spanner/ALS_Clip.laz"}) {
+    const auto canopy = importers::import_canopy({.las = {(folder / name).string()}});
+    const GridGeometry& grid = canopy->geometry();
+    const Window whole{0, 0, grid.columns, grid.rows};
+    const FoundBuildings found = find_buildings(*canopy, whole, {});
+    const FoundPoles poles = find_poles(*canopy, whole, {});
+    std::printf("%s: %.2f ha, %.1f first returns/m2, %zu buildings, %zu poles;", name,
+                double(grid.cells()) * grid.where.dx * grid.where.dx / 1e4, canopy->point_density(),
+                found.buildings.size(), poles.poles.size());
+    for (const DetectedBuilding& b : found.buildings)
+      std::printf(" %.0f m2 at %.0f %.0f (%.2f, pulses %.2f);", b.area, b.outline.outer.vertices[0].x(),
+                  b.outline.outer.vertices[0].y(), b.confidence, b.penetration);
+    for (const auto& [reason, count] : found.rejected) std::printf(" %d %s;", int(count), reason.c_str());
+    std::printf("\n");
+    all += found.buildings.size();
+  }
+  EXPECT_LE(all, 2U);
 }
 
 }  // namespace

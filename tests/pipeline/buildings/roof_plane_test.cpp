@@ -31,7 +31,7 @@ std::vector<Cell> cells_on_plane(Random& random, double slope_x, double slope_y,
       cell.points.emplace_back(x, y, z / 1000);
       const auto a = std::llround(dx), b = std::llround(dy), c = std::llround(z);
       CellSums& s = cell.sums;
-      ++s.count, s.x += a, s.y += b, s.z += c;
+      ++s.count, s.x += int(a), s.y += int(b), s.z += c;
       s.xx += a * a, s.xy += a * b, s.yy += b * b, s.xz += a * c, s.yz += b * c, s.zz += c * c;
     }
     cells.push_back(std::move(cell));
@@ -75,8 +75,8 @@ TEST(PlaneSums, FitsAsLeastSquaresOfThePoints) {
 TEST(PlaneSums, FewReturnsOrReturnsOnALineGiveNoPlane) {
   PlaneSums few({0, 0}, 0), line({0, 0}, 0);
   for (int i = 0; i < 9; ++i) {
-    const std::int64_t x = 250 * (i % 3) - 250;
-    const CellSums on_line{.count = 1, .x = x, .xx = x * x};
+    const int x = 250 * (i % 3) - 250;
+    const CellSums on_line{.count = 1, .x = x, .xx = std::int64_t{x} * x};
     if (i < 5) few.add({.count = 1}, {0.5 * i, 0.7 * (i % 2)});
     line.add(on_line, {0, 0});
   }
