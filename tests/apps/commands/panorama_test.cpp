@@ -22,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kPi = std::numbers::pi, kDegree = kPi / 180;
+constexpr double kHalfTurn = std::numbers::pi, kOneDegree = kHalfTurn / 180;
 constexpr double kEye = 2;  // m, the default of the setting `eye`
 
 const std::filesystem::path kSource = WAYMARK_SOURCE_DIR;
@@ -69,9 +69,9 @@ struct DegreeDem {
 struct MetresPerDegree {
   double east, north;
   explicit MetresPerDegree(double lat) {
-    const double e2 = 0.00669438, s = std::sin(lat * kDegree), w = 1 - e2 * s * s;
-    east = 6378137 / std::sqrt(w) * std::cos(lat * kDegree) * kDegree;
-    north = 6378137 * (1 - e2) / (w * std::sqrt(w)) * kDegree;
+    const double e2 = 0.00669438, s = std::sin(lat * kOneDegree), w = 1 - e2 * s * s;
+    east = 6378137 / std::sqrt(w) * std::cos(lat * kOneDegree) * kOneDegree;
+    north = 6378137 * (1 - e2) / (w * std::sqrt(w)) * kOneDegree;
   }
 };
 
@@ -81,12 +81,12 @@ std::vector<double> horizon(const DegreeDem& dem, double lon, double lat, double
   const double eye = dem(lon, lat) + kEye;
   std::vector<double> elevations;
   for (int i = 0; i < count; ++i) {
-    const double azimuth = yaw - kPi + 2 * kPi * i / count;  // from east towards north
+    const double azimuth = yaw - kHalfTurn + 2 * kHalfTurn * i / count;  // from east towards north
     double highest = -1;
     for (double t = 60; t < 60000; t += 30 + 0.001 * t) {
       // A geodesic to second order (Legendre); a line of one azimuth would miss by 200 m in 50 km.
       const double east = t * std::cos(azimuth), north = t * std::sin(azimuth);
-      const double bend = std::tan(lat * kDegree) / 6378137;
+      const double bend = std::tan(lat * kOneDegree) / 6378137;
       const double to_lat = lat + (north - east * east * bend / 2) / here.north;
       const double to_lon = lon + east * (1 + north * bend) / here.east;
       const double rise = (dem(to_lon, to_lat) - eye - 0.87 * t * t / (2 * 6371000)) / t;
@@ -101,9 +101,9 @@ std::string panorama_log(std::vector<double> elevations, double sd, Random& rand
   json items = json::array();
   for (const double e : elevations)
     items.push_back(random.bernoulli(0.02) ? json() : json(e + sd * random.normal()));
-  const json line{{"kind", "panorama"},  {"t", 0},
-                  {"first_angle", -kPi}, {"angle_step", 2 * kPi / double(elevations.size())},
-                  {"elevation_sd", sd},  {"elevations", items}};
+  const json line{{"kind", "panorama"},        {"t", 0},
+                  {"first_angle", -kHalfTurn}, {"angle_step", 2 * kHalfTurn / double(elevations.size())},
+                  {"elevation_sd", sd},        {"elevations", items}};
   return json{{"kind", "header"}, {"version", 1}, {"frame", "map"}}.dump() + "\n" + line.dump() + "\n";
 }
 
@@ -137,7 +137,7 @@ Counts locate_panoramas(const std::filesystem::path& file, int tries, std::uint6
   Counts counts;
   for (int i = 0; i < tries;) {
     const double lon = dem.lon(random.uniform(0.2, 0.8)), lat = dem.lat(random.uniform(0.2, 0.8)),
-                 yaw = random.uniform(-kPi, kPi);
+                 yaw = random.uniform(-kHalfTurn, kHalfTurn);
     if (!std::isfinite(dem(lon, lat)) || dem(lon, lat) < 1) continue;
     ++i;
     write_text(folder / "log.jsonl", panorama_log(horizon(dem, lon, lat, yaw, 1440), 0.001, random));
