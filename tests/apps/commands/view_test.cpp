@@ -190,7 +190,7 @@ TEST_F(ViewCommand, WallsDoorsSignsAndBuildingsHaveTheirShapes) {
   std::vector<std::string> steps;
   const std::vector<std::string> uids{"w", "c", "e", "s", "d", "b", "l"};
   for (const std::string& uid : uids) steps.push_back("eval:" + box + "(\"" + uid + "\")");
-  for (const std::string uid : {"w", "c", "e", "s", "d", "b", "l", "p", "u"}) {
+  for (const std::string& uid : std::vector<std::string>{"w", "c", "e", "s", "d", "b", "l", "p", "u"}) {
     // Each is looked at from near, as a user would choose it.
     steps.push_back("eval:(() => { const one = findLandmark(\"" + uid +
                     "\"), n = one.layer.numbers, at = one.index * LANDMARK.size; eye.x = n[at];"
