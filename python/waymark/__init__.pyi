@@ -903,7 +903,7 @@ def evaluate_track(track: Any, truth: Any, *, drive: Any = ..., align: _Path = .
         also: NAME=TRACK.csv: more tracks of the picture"""
     ...
 
-def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the craters of an image: see `detect`.
 
     Keywords:
@@ -918,6 +918,7 @@ def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method
         min_diameter: pixels
         max_diameter: pixels
         min_confidence: 0 to 1
+        aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
         threads: 0: one per processor"""
@@ -935,7 +936,7 @@ def find_mountain_tops(dem: Any, *, output: Any = ..., transform: Any = ..., crs
     else the landmarks as a structured array. Options: min_prominence, min_isolation, nodata, base, ..."""
     ...
 
-def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation.
 
     Keywords:
@@ -950,6 +951,7 @@ def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: 
         min_diameter: pixels
         max_diameter: pixels
         min_confidence: 0 to 1
+        aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
         threads: 0: one per processor"""
