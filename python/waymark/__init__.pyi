@@ -845,7 +845,7 @@ class UnitsFailed(Error):
 class Warning(UserWarning):
     """A warning of a workflow."""
 
-def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
 
     image is a file or an array: (rows, columns) or (rows, columns, bands). The columns are those of
@@ -864,6 +864,7 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
         min_diameter: pixels
         max_diameter: pixels
         min_confidence: 0 to 1
+        aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
         threads: 0: one per processor"""
@@ -910,7 +911,7 @@ def find_buildings(las: Any = ..., *, dsm: Any = ..., dtm: Any = ..., chm: Any =
     `find_mountain_tops`. Options: min_area, max_extent, roughness, overhang, ..."""
     ...
 
-def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the craters of an image: see `detect`.
 
     Keywords:
@@ -925,6 +926,7 @@ def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method
         min_diameter: pixels
         max_diameter: pixels
         min_confidence: 0 to 1
+        aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
         threads: 0: one per processor"""
@@ -942,7 +944,7 @@ def find_mountain_tops(dem: Any, *, output: Any = ..., transform: Any = ..., crs
     else the landmarks as a structured array. Options: min_prominence, min_isolation, nodata, base, ..."""
     ...
 
-def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
     """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation.
 
     Keywords:
@@ -957,6 +959,7 @@ def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: 
         min_diameter: pixels
         max_diameter: pixels
         min_confidence: 0 to 1
+        aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
         threads: 0: one per processor"""
@@ -993,7 +996,7 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         threads"""
     ...
 
-def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any = ..., stands_layer: _Path = ..., grid: float = ..., allometry: _Path = ..., volume: _Path = ..., recall: _Path = ..., max_trees: int = ..., class_width: float = ..., report: _Path = ...) -> list[dict[str, Any]]:
+def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any = ..., stands_layer: _Path = ..., aoi: _Path = ..., grid: float = ..., allometry: _Path = ..., volume: _Path = ..., recall: _Path = ..., max_trees: int = ..., class_width: float = ..., report: _Path = ...) -> list[dict[str, Any]]:
     """Counts the trees of a map by stand, as `waymark inventory`; returns a list with a dict for each stand.
 
     stands is a layer of polygons in any CRS; without it and without `grid` the whole map is one stand. The keys are
@@ -1002,6 +1005,7 @@ def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any =
 
     Keywords:
         stands_layer: of a file that holds several
+        aoi: polygons, each a stand, in place of `stands`; trees outside do not count
         grid: metres, side of square cells in place of stands; 0: none
         allometry: table of stem diameters by species; empty: those of the map
         volume: table of form factors by species; empty: 0.47 +- 0.04 for all
@@ -1058,13 +1062,14 @@ def map_images(images: Any, output: Any, *, find: Any = ..., progress: Any = ...
         height_sd: metres, of a height of the ground; 0: not known"""
     ...
 
-def merge(maps: Any, output: Any, *, progress: Any = ..., changes: bool = ..., max_move: float = ...) -> dict[str, int]:
+def merge(maps: Any, output: Any, *, progress: Any = ..., aoi: _Path = ..., changes: bool = ..., max_move: float = ...) -> dict[str, int]:
     """Merges maps of one CRS into one, as `waymark merge`; returns counts: landmarks, fused, identical.
 
-    options: changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map to
-    the second.
+    options: aoi, changes, max_move. With changes also gone, new, moved, unchanged and not_covered, from the first map
+    to the second.
 
     Keywords:
+        aoi: polygons: landmarks outside are left out of the result; empty: none are
         changes: find what changed from the first to the second map, two only
         max_move: m; what moved farther is gone and new"""
     ...
@@ -1077,7 +1082,7 @@ def read_map(path: Any) -> Map:
     """Opens a map file. Raises waymark.Error if it is missing, damaged or of a newer version."""
     ...
 
-def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., camera_crs: _Path = ..., lens: _Path = ..., readout_time: float = ..., control: _Path = ..., marks: _Path = ..., altimeter: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
+def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = ..., cameras: _Path = ..., camera_crs: _Path = ..., lens: _Path = ..., readout_time: float = ..., control: _Path = ..., marks: _Path = ..., altimeter: _Path = ..., map_image: _Path = ..., dem: _Path = ..., crs: _Path = ..., cell: float = ..., aoi: _Path = ..., map: _Path = ..., work: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Makes cameras, a DEM and an orthophoto of images in a folder, as `waymark reconstruct`; returns counts.
 
     until: "poses", "dem" or "ortho". options: cameras, lens, control, marks, dem, crs, cell, map, threads.
@@ -1095,6 +1100,7 @@ def reconstruct(images: Any, folder: Any, *, until: Any = ..., progress: Any = .
         dem: coarse DEM, start of heights, and the reference if there is no other; empty: none
         crs: of the map; empty: that of camera file or references, else a UTM zone
         cell: of the DEM, metres; 0: twice the median ground sample distance
+        aoi: polygons: DEM and orthophoto cover the box around them; empty: all
         map: GeoPackage of landmarks; empty: none
         work: folder that keeps the results of steps for later runs; empty: none
         threads: 0: one per processor"""
@@ -1159,11 +1165,12 @@ def simulate(scenario: Any, folder: Any, *, progress: Any = ..., seed: int | Non
         drive_only: write the drive and its truth, no DEM and no images"""
     ...
 
-def web(map: Any, output: Any, *, progress: Any = ..., types: Sequence[Any] | _Path = ..., min_confidence: float = ..., dem: Sequence[Any] | _Path = ..., terrain_pixels: int = ..., max_zoom: int = ..., assets: _Path = ..., title: _Path = ..., threads: int = ...) -> dict[str, int]:
+def web(map: Any, output: Any, *, progress: Any = ..., aoi: _Path = ..., types: Sequence[Any] | _Path = ..., min_confidence: float = ..., dem: Sequence[Any] | _Path = ..., terrain_pixels: int = ..., max_zoom: int = ..., assets: _Path = ..., title: _Path = ..., threads: int = ...) -> dict[str, int]:
     """Writes a folder that shows a map in web browsers, as `waymark web`; returns the numbers of its `--format json`:
     landmarks, outside, max_zoom, landmark_tiles, terrain_tiles, areas, area_tiles, has_library.
 
     Keywords:
+        aoi: polygons: landmarks outside are left out; empty: none are
         types: landmark types shown; empty: all
         min_confidence: landmarks of less are left out
         dem: elevation models; empty: stored in the map, or read by its runs
