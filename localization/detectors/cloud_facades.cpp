@@ -248,6 +248,8 @@ std::vector<CloudFacade> find_facades(const PointCloud& cloud, const CloudFacade
         filled.seen_through(cells) <= options.max_through * static_cast<double>(plane.cells.size()))
       facades.push_back(line);
   }
+  std::ranges::stable_sort(facades, std::ranges::greater{}, &CloudFacade::length);
+  if (std::ssize(facades) > options.max_count) facades.resize(static_cast<std::size_t>(options.max_count));
   return facades;
 }
 

@@ -15,6 +15,7 @@ struct CloudFacadeOptions {
   double min_low_top = 1.6;   ///< m, of those: cars are lower
   double max_rms = 0.06;      ///< m of its points from the plane: hedges are rougher
   double max_through = 0.35;  ///< points seen through it per point on it: fences and trees let pass
+  int max_count = 4;          ///< the longest ones: many pieces of a wall are ambiguous
   double min_filled = 0.35;   ///< fraction of its cells of 0.5 m with points
 };
 

@@ -35,7 +35,7 @@ struct CloudSign {
 /// half of
 ///   the strongest of the scan. Signs are retro-reflective, walls are not.
 /// - Without: flat free plates of such a size. Boards and mirrors look the same.
-/// The result does not depend on the order of the points. 10 ms for 125,000 points.
+/// The result does not depend on the order of the points. 4 ms for 125,000 points, 40 ms by shape.
 std::vector<CloudSign> find_signs(const PointCloud& cloud, const CloudSignOptions& options = {});
 
 }  // namespace waymark::localization

@@ -86,8 +86,8 @@ TEST(CloudSigns, TheDetectorGivesFacingAndHeight) {
   TypeRegistry types;
   register_landmark_types(types);
   const TypeId sign = types.id("traffic_sign");
-  const auto seen = make_point_detector(
-      types, std::vector{sign})(scan_street({.plates = {{{8, -0.3}, {8, 0.3}, 1.7, 2.3, 0.9F}}}, 1, 10));
+  const auto seen = make_point_detector(types, std::vector{sign})(
+      scan_street({.plates = {{{8, -0.3}, {8, 0.3}, 1.7, 2.3, 0.9F}, {{-6, 9}, {6, 9}, 0, 4}}}, 1, 10));
   ASSERT_EQ(seen.sightings.size(), 1U);
   const SeenLandmark& s = seen.sightings[0];
   EXPECT_TRUE(s.is_valid());

@@ -52,7 +52,7 @@ TEST(TownScanner, FacadesSignsAndKerbsOfMadeStreetsAreFound) {
       const localization::Pose2 robot{x, -1.2, 0};
       const localization::PointCloud cloud = turn_of_scanner(town, robot, 0, {}, random);
       const auto in_map = [&](const Eigen::Vector2d& at) { return Eigen::Vector2d(at + robot.at()); };
-      const auto planes = localization::find_facades(cloud);
+      const auto planes = localization::find_facades(cloud, {.max_count = 100});
       for (const auto& f : planes) {
         const Eigen::Vector2d at = in_map(f.centre);
         double off = 1e9;
