@@ -115,7 +115,7 @@ std::map<std::string, double> last_row(const std::string& csv) {
   std::istringstream columns(names), cells(last);
   std::map<std::string, double> row;
   for (std::string name, cell; std::getline(columns, name, ',') && std::getline(cells, cell, ',');)
-    row[name] = cell.empty() ? NAN : std::stod(cell);
+    if (name != "crs") row[name] = cell.empty() ? NAN : std::stod(cell);
   return row;
 }
 
