@@ -20,7 +20,7 @@ Artifact::Value RunResult::find_one(std::string_view name, std::type_index type)
   if (const ArtifactPtr& item = found->items.front()) return item->value();
   if (!report.failures.empty()) {
     const Failure& first = report.failures.front();
-    throw Error(first.code, fmt::format("'{}' was not made: {} failed", name, first.unit), first.message);
+    throw Error(first.code, fmt::format("'{}' was not made: {} failed", name, first.unit), "", first.message);
   }
   throw Error(ErrorCode::input, fmt::format("'{}' was not made: part of the work is left", name), {},
               "run without --check, --shard, --stage and --unit to finish the job");
