@@ -17,9 +17,10 @@ Observation observation_of_line(const localization::SeenLandmark& seen, const Dr
                                 const TypeRegistry& types, const localization::FeatureScales& scales,
                                 const DriveMappingOptions& options);
 
-/// Unites the pieces of each line, so that they are observations of one landmark. Each is moved along the
-/// line to the middle of their union, and gets its length. Pieces are of one line within 0.15 rad and 0.4 m,
-/// with gaps of 1.5 m or less, in any order. Other observations stay. Cost: pieces times lines.
+/// Unites the pieces of each line, so that they are observations of one landmark; other observations stay.
+/// - Pieces are of one line within 0.15 rad and 0.4 m, with gaps of 1.5 m or less, in any order.
+/// - Each is moved along the line to the middle of their union, and gets its length.
+/// - Cost: pieces times lines.
 void unite_lines(std::vector<Observation>& observations, const TypeRegistry& types);
 
 /// Restores what the mean of many pieces lost: the position of a line along itself is not known.
