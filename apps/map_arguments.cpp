@@ -26,6 +26,20 @@ void print_map_result(const workflows::MapResult& result, const std::string& map
 
 }  // namespace
 
+std::vector<Argument> canopy_arguments(workflows::CanopyFiles& files) {
+  return {
+      Argument{"--chm", "CHM...", &files.chm, "Canopy height models, heights above ground, that GDAL opens"}
+          .offering(Offer::file),
+      Argument{"--dsm", "DSM...", &files.dsm, "Surface models, with --dtm"}.offering(Offer::file),
+      Argument{"--dtm", "DTM...", &files.dtm,
+               "Terrain models on any grid, under the surface or the laser points"}
+          .offering(Offer::file),
+      Argument{"--las", "FILE...", &files.las,
+               "LAS, LAZ or COPC files, or folders of them: one catalogue, with ground classified or "
+               "--dtm"}
+          .offering(Offer::file)};
+}
+
 std::vector<Argument> map_arguments(MapCommand& asked) {
   workflows::MapRequest& request = asked.request;
   return {

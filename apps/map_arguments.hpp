@@ -17,6 +17,9 @@ struct MapCommand {
 /// Returns the arguments that `waymark run` and the shortcuts share. They point into `asked`.
 std::vector<Argument> map_arguments(MapCommand& asked);
 
+/// Returns the arguments that name the files of a canopy. They point into `files`.
+std::vector<Argument> canopy_arguments(workflows::CanopyFiles& files);
+
 /// Returns the keys of what `waymark run` and the shortcuts print with `--format json`.
 std::vector<ResultKey> map_result_keys();
 

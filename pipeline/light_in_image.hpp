@@ -21,7 +21,7 @@ std::optional<Radians> sun_angle_of_ground(const Pixels& image);
 /// Returns the warning about ground on which the detector of rocks cannot be trusted.
 std::string unusual_ground_warning(const LightCoherence& seen);
 
-/// Returns the warning about an image of which much lies in shadow.
+/// Returns the warning about an image that lies in shadow for a good part.
 std::string shaded_ground_warning(const ShadedGround& seen);
 
 }  // namespace waymark::pipeline

@@ -31,17 +31,7 @@ class Buildings final : public Shortcut {
 
  private:
   CommandSpec describe_own() override {
-    const auto files = [](const char* name, const char* word, std::vector<std::string>* into,
-                          const char* help) {
-      return Argument{name, word, into, help}.offering(Offer::file);
-    };
-    std::vector<Argument> all{
-        files("--las", "FILE...", &files_.las,
-              "LAS, LAZ or COPC files, or folders of them: one survey, with ground classified or --dtm"),
-        files("--dsm", "DSM...", &files_.dsm, "Surface models, with --dtm"),
-        files("--dtm", "DTM...", &files_.dtm,
-              "Terrain models on any grid, under the surface or the laser points"),
-        files("--chm", "CHM...", &files_.chm, "Models of heights above ground, that GDAL opens")};
+    std::vector<Argument> all = canopy_arguments(files_);
     all.push_back({"--no-poles", "", &no_poles_, "Search no poles"});
     all.push_back({"--trees", "", &trees_, "Map the trees that are not on roofs, too"});
     return {

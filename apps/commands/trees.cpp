@@ -18,17 +18,7 @@ class Trees final : public Shortcut {
 
  private:
   CommandSpec describe_own() override {
-    const auto files = [](const char* name, const char* word, std::vector<std::string>* into,
-                          const char* help) {
-      return Argument{name, word, into, help}.offering(Offer::file);
-    };
-    std::vector<Argument> all{
-        files("--chm", "CHM...", &files_.chm, "Canopy height models, heights above ground, that GDAL opens"),
-        files("--dsm", "DSM...", &files_.dsm, "Surface models, with --dtm"),
-        files("--dtm", "DTM...", &files_.dtm,
-              "Terrain models on any grid, under the surface or the laser points"),
-        files("--las", "FILE...", &files_.las,
-              "LAS, LAZ or COPC files, or folders of them: one catalogue, with ground classified or --dtm")};
+    std::vector<Argument> all = canopy_arguments(files_);
     all.push_back({"--flights", "", &files_.flights,
                    "Each file is a survey of its own: trees that several saw are merged and valued"});
     all.push_back({"--no-crowns", "", &no_crowns_, "Treetops alone: no crowns, no crown diameters"});

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 #include "localization/detectors/scan_segments.hpp"
@@ -11,17 +10,11 @@
 namespace waymark::localization {
 namespace {
 
-/// Returns the range of a beam; infinity if it has none.
-double reflected_range(const LaserScan& scan, std::size_t beam) {
-  const auto r = static_cast<double>(scan.ranges[beam]);
-  return std::isfinite(r) && r > 0 && r < scan.max_range ? r : std::numeric_limits<double>::infinity();
-}
-
 /// Returns the intensity from which a return is strong; `std::nullopt` without returns.
 std::optional<float> strong_return(const LaserScan& scan, const LaserReflectorOptions& options) {
   std::vector<float> all;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i)
-    if (std::isfinite(reflected_range(scan, i)) && std::isfinite(scan.intensities[i]))
+    if (std::isfinite(range_of(scan, i)) && std::isfinite(scan.intensities[i]))
       all.push_back(scan.intensities[i]);
   if (all.empty()) return {};
   const auto middle = all.begin() + std::ssize(all) / 2;
@@ -36,9 +29,9 @@ bool stands_free(const LaserScan& scan, const BeamSegment& run, double front, do
   // The beam beside it may hit both: the next one counts as well.
   const auto is_free = [&](std::size_t beside, std::ptrdiff_t step) {
     const auto next = static_cast<std::ptrdiff_t>(beside) + step;
-    if (reflected_range(scan, beside) > front + clear) return true;
+    if (range_of(scan, beside) > front + clear) return true;
     return next >= 0 && next < std::ssize(scan.ranges) &&
-           reflected_range(scan, static_cast<std::size_t>(next)) > front + clear;
+           range_of(scan, static_cast<std::size_t>(next)) > front + clear;
   };
   return is_free(run.first - 1, -1) && is_free(run.last + 1, 1);
 }
@@ -50,21 +43,21 @@ std::vector<Reflector> find_reflectors(const LaserScan& scan, const LaserReflect
   const auto strong = strong_return(scan, options);
   if (!strong || !(*strong > 0)) return {};
   const auto is_strong = [&](std::size_t i) {
-    return scan.intensities[i] >= *strong && reflected_range(scan, i) < options.max_range;
+    return scan.intensities[i] >= *strong && range_of(scan, i) < options.max_range;
   };
   std::vector<Reflector> found;
   for (std::size_t i = 0; i < scan.ranges.size(); ++i) {
     if (!is_strong(i)) continue;
     BeamSegment run{i, i};
     while (run.last + 1 < scan.ranges.size() && is_strong(run.last + 1) &&
-           std::abs(reflected_range(scan, run.last + 1) - reflected_range(scan, run.last)) < options.jump)
+           std::abs(range_of(scan, run.last + 1) - range_of(scan, run.last)) < options.jump)
       ++run.last;
     i = run.last;
     if (static_cast<int>(run.beams()) < options.min_beams) continue;
     const std::size_t skip = run.beams() / 3;
     double front = 0, bearing = 0, weight = 0;
     for (std::size_t k = run.first + skip; k <= run.last - skip; ++k)
-      front += reflected_range(scan, k) / static_cast<double>(run.beams() - 2 * skip);
+      front += range_of(scan, k) / static_cast<double>(run.beams() - 2 * skip);
     for (std::size_t k = run.first; k <= run.last; ++k) {
       const auto strength = static_cast<double>(scan.intensities[k]);
       weight += strength, bearing += strength * (scan.first_angle + static_cast<double>(k) * scan.angle_step);

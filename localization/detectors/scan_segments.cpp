@@ -4,17 +4,20 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace waymark::localization {
+
+double range_of(const LaserScan& scan, std::size_t beam) {
+  const auto r = static_cast<double>(scan.ranges[beam]);
+  return std::isfinite(r) && r > 0 && r < scan.max_range ? r : std::numeric_limits<double>::infinity();
+}
 
 std::vector<double> bridge_outliers(const LaserScan& scan, double jump) {
   const double far = scan.max_range * 10;
   std::vector<double> ranges;
   ranges.reserve(scan.ranges.size());
-  for (const float range : scan.ranges) {
-    const double r = static_cast<double>(range);
-    ranges.push_back(std::isfinite(r) && r > 0 && r < scan.max_range ? r : far);
-  }
+  for (std::size_t i = 0; i < scan.ranges.size(); ++i) ranges.push_back(std::min(range_of(scan, i), far));
   double before = ranges.empty() ? far : ranges[0];  // as it was before bridging
   for (std::size_t i = 1; i + 1 < ranges.size(); ++i) {
     const double a = before, b = ranges[i + 1];

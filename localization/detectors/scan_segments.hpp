@@ -6,6 +6,9 @@
 #include "localization/sighting.hpp"
 namespace waymark::localization {
 
+/// Returns the range of a beam, m; infinity without a return.
+double range_of(const LaserScan& scan, std::size_t beam);
+
 /// Returns the ranges with ten times max_range where there was no return, and with single outliers
 /// bridged. A beam that differs from both neighbours by `jump`, while these agree to `jump`, takes their
 /// mean: dropouts and specks do not split an object.

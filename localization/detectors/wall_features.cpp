@@ -6,6 +6,8 @@
 #include <numbers>
 #include <optional>
 
+#include "localization/detectors/scan_segments.hpp"
+
 namespace waymark::localization {
 namespace {
 
@@ -45,12 +47,6 @@ bool is_corner_end(std::span<const WallLine> walls, std::size_t i, bool last,
                    const WallFeatureOptions& options) {
   if (last) return i + 1 < walls.size() && corner_of(walls[i], walls[i + 1], options);
   return i > 0 && corner_of(walls[i - 1], walls[i], options);
-}
-
-// Returns the range of a beam; infinity if it has none.
-double range_of(const LaserScan& scan, std::size_t beam) {
-  const auto r = static_cast<double>(scan.ranges[beam]);
-  return std::isfinite(r) && r > 0 && r < scan.max_range ? r : std::numeric_limits<double>::infinity();
 }
 
 std::optional<WallEnd> end_of(const LaserScan& scan, const WallLine& wall, bool last,

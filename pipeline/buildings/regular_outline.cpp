@@ -74,7 +74,7 @@ class Pieces {
     }
   }
 
-  /// Returns the pieces of least price, the first of which begins at point 0.
+  /// Returns the pieces of least price; the first begins at point 0.
   std::vector<Piece> divide() const {
     const double price = kPrice * min_step_ * min_step_;
     const auto min_points = std::max<std::size_t>(2, static_cast<std::size_t>(std::floor(min_step_ / step_)));

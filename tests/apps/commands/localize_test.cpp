@@ -424,7 +424,7 @@ TEST_F(Localize, ScansAreSearchedForAllTypesOfTheMap) {
   }
 }
 
-// A circle about four beacons of which the map has two; ranges are exact to a centimetre.
+// A circle about four beacons; the map has two of them; ranges are exact to a centimetre.
 TEST_F(Localize, BeaconsThatADriveHasPlacedAreWrittenToAMap) {
   const std::map<std::string, std::pair<double, double>> beacons{
       {"north", {2, 24}}, {"east", {26, -3}}, {"south", {-4, -22}}, {"west", {-23, 5}}};

@@ -55,7 +55,7 @@ std::vector<DriveLook> made_looks() {
   return looks_of_drive(log, poses, make_laser_detector(all_types(), {.find = "walls"}), "made");
 }
 
-// A wall of 20 m along y = 8, of which each look sees another piece of 6 m.
+// A wall of 20 m along y = 8; each look sees another piece of 6 m.
 TEST(DriveLandmarks, PiecesOfALineAreOneWall) {
   const TypeRegistry& types = all_types();
   const TypeId wall = types.id("wall");

@@ -9,7 +9,7 @@ namespace waymark::test {
 using namespace pipeline;
 namespace {
 
-// Views of pairs of `images` images: 50 each, of which `bad` images share 1 with any other.
+// Views of pairs of `images` images: 50 each, but 1 where an image is `bad`.
 Repetition views_of(std::uint32_t images, const std::vector<std::uint32_t>& bad) {
   Repetition seen{.expected = 0, .raw = 0, .chance = 0.02, .pairs = {}};
   for (std::uint32_t a = 0; a < images; ++a)
