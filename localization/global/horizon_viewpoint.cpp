@@ -13,8 +13,9 @@ namespace {
 
 constexpr std::size_t kSectors = kHorizonSectors;
 constexpr double kWidth = 2 * std::numbers::pi / kHorizonSectors;
-constexpr double kModel = 0.004;   // rad: error of cone tracing
-constexpr double kMissed = 0.3;    // probability that a top is not on the horizon of the DEM
+constexpr double kModel = 0.004;  // rad: error of cone tracing
+constexpr double kMissed = 0.3;   // probability that a top is not on the horizon of the DEM
+constexpr double kHiddenSlope = 0.3;
 constexpr double kAnywhere = 0.2;  // rad: range of elevations at an unknown position
 
 std::optional<HorizonViewpoint> compute_horizons(const TerrainGrid& ground, const Eigen::Vector2d& at,
@@ -124,14 +125,18 @@ HorizonEdge horizon_at(const TerrainGrid& ground, const Eigen::Vector2d& at, dou
   const double dx = std::cos(azimuth), dy = std::sin(azimuth), cell = ground.cell();
   const double bend = curvature_drop(1, options.body_radius, options.refraction);
   const double above = ground.summit() - eye;
-  double best = -1e9, far = 0;
+  double best = -1e9, far = 0, possible = -1e9;
   const double end = std::min(options.reach, ground.exit_distance(at, {dx, dy}));
   for (double t = cell; t < end; t += std::max(0.7 * cell, 0.004 * t)) {
     if (above < best * t) break;
-    const double rise = (ground.height(at.x() + dx * t, at.y() + dy * t) - bend * t * t - eye) / t;
-    if (rise > best) best = rise, far = t;  // false for unknown terrain
+    const TerrainGrid::Sample surface = ground.surface(at.x() + dx * t, at.y() + dy * t);
+    const double rise = (surface.height + kHiddenSlope * surface.gap - bend * t * t - eye) / t;
+    if (surface.gap > 0)
+      possible = std::max(possible, rise);
+    else if (rise > best)  // false where there is no terrain
+      best = rise, far = t;
   }
-  return {static_cast<float>(best), static_cast<float>(far)};
+  return {static_cast<float>(best), static_cast<float>(far), static_cast<float>(possible)};
 }
 
 std::vector<HorizonViewpoint> compute_horizons(const TerrainGrid& ground, std::span<const Eigen::Vector2d> at,

@@ -9,6 +9,10 @@ namespace waymark::localization {
 /// Horizon in one direction: tangent of its elevation, and its distance, m. `far` 0: no terrain.
 struct HorizonEdge {
   float rise = -1e9F, far = 0;
+  /// Tangent up to which terrain in holes of the DEM may rise.
+  float possible = -1e9F;
+
+  bool is_known() const { return far > 0 && !(possible > rise); }
 };
 
 /// Returns the horizon in sectors of equal width, the first from azimuth 0 (east) towards y (north). Takes
@@ -19,7 +23,8 @@ struct HorizonEdge {
 std::vector<HorizonEdge> horizon_ring(const TerrainGrid& ground, const Eigen::Vector2d& at, double eye,
                                       double nearest, int sectors, const SkylineOptions& options);
 
-/// Returns the horizon in one direction, by a ray in steps of about a cell through bilinear heights.
+/// Returns the horizon in one direction, by a ray in steps of about a cell through bilinear heights. Terrain
+/// in a hole may be higher than the filled surface by `kHiddenSlope` times the distance to known terrain.
 HorizonEdge horizon_at(const TerrainGrid& ground, const Eigen::Vector2d& at, double eye, double azimuth,
                        const SkylineOptions& options);
 

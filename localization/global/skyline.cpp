@@ -76,8 +76,8 @@ class SkylineSearch {
 
   std::string_view profile_verdict(const std::vector<SkylineFix>& fixes) const {
     if (fixes.empty()) return "no position has such a horizon";
-    const double rays = static_cast<double>(seen_->rays().size());
-    if (fixes[0].matched < o_.min_fraction * rays) return "too little of the horizon fits one pose";
+    if (fixes[0].matched < o_.min_fraction * fixes[0].compared)
+      return "too little of the horizon fits one pose";
     if (!(fixes[0].log_false_alarms < std::log(o_.false_alarms))) return "the best pose may fit by chance";
     if (fixes.size() > 1 && !(badness(fixes[1]) - badness(fixes[0]) > std::log(o_.lead)))
       return "two poses fit alike";

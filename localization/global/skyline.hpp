@@ -48,7 +48,8 @@ struct SkylineOptions {
 struct SkylineFix {
   PoseEstimate at;
   std::vector<std::optional<std::uint32_t>> summits;  ///< summit of each top, if it is one
-  int matched = 0;                                    ///< tops that fit, summits or not
+  int matched = 0;                                    ///< tops or rays that fit, summits or not
+  int compared = 0;                                   ///< tops or rays whose horizon the DEM knows
   double squares = 0, log_false_alarms = 0;
 };
 

@@ -155,7 +155,8 @@ class HorizonFit {
 
   /// Computes the evidence for the pose: each top is one of the maxima of its horizon, or arbitrary.
   SkylineFix evaluate_fix(const PoseEstimate& e) const {
-    SkylineFix fix{.at = e, .summits = named_, .matched = 0, .squares = 0, .log_false_alarms = 0};
+    SkylineFix fix{
+        .at = e, .summits = named_, .matched = 0, .compared = 0, .squares = 0, .log_false_alarms = 0};
     const double of_all = (1 - kMissed) / maxima(e.pose, eye(e.pose));
     double sum = 0, squares = 0, usable = 0;
     for (const HorizonTop& t : tops_)
@@ -164,6 +165,7 @@ class HorizonFit {
                  spread = std::sqrt(std::max(squares / std::max(usable, 1.0) - mean * mean, 1e-4));
     for (std::size_t i = 0; i < tops_.size(); ++i) {
       if (!tops_[i].elevation) continue;
+      ++fix.compared;
       double ratio = kMissed;  // density of the top at this pose over that of an arbitrary top
       if (matches_[i]) {
         ++fix.matched;

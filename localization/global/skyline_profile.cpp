@@ -24,20 +24,25 @@ constexpr double kKernel = 2.5;       // of Cauchy, standard deviations
 constexpr double kGateSquares = 9;
 constexpr int kFitRounds = 7, kFinalRounds = 3;
 constexpr double kErrorFactors[] = {1, 0.5, 0.25, 0.125, 0.0625};  // of the stated error of the heights
-constexpr double kMinMatched = 0.5;                                // fraction of the rays
+constexpr double kMinMatched = 0.5;                                // fraction of the rays compared
 constexpr double kGridError = 0.12;  // of position_sd, about a cell: error of a pose by bilinear heights
 
-/// Predicted horizon of all rays at a pose, rad, and distances.
+/// Predicted horizon of all rays at a pose, rad, and distances. Elevations are NaN where the DEM has no
+/// terrain or a hole may hide the horizon.
 struct Prediction {
   std::vector<double> elevation, distance;
+  std::vector<bool> hidden;
 };
+
+/// Pose of the robot and what its eye is higher than the DEM says, m: an error that all rays share.
+using EyeState = Eigen::Vector4d;
 
 class ProfileFit {
  public:
   ProfileFit(const SkylineScene& scene, const SeenHorizon& seen) : scene_(scene), seen_(seen) {}
 
   std::optional<SkylineFix> find(const HorizonGuess& guess, double place) {
-    Eigen::Vector3d pose(guess.at.x(), guess.at.y(), guess.yaw);
+    EyeState pose(guess.at.x(), guess.at.y(), guess.yaw, 0);
     error_ = scene_.options.height_sd;
     const double reach = 4 * place + 4 * scene_.terrain.cell();
     if (!improve(pose, place, kSectorWidth, kFitRounds)) return {};
@@ -52,22 +57,22 @@ class ProfileFit {
 
  private:
   struct System {
-    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d right = Eigen::Vector3d::Zero();
+    Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
+    Eigen::Vector4d right = Eigen::Vector4d::Zero();
     double cost = 0;
   };
 
   /// Moves the pose by steps of Levenberg and Marquardt; the tolerance shrinks from that of the guess.
-  bool improve(Eigen::Vector3d& pose, double place, double turn, int rounds) const {
+  bool improve(EyeState& pose, double place, double turn, int rounds) const {
     double damping = 1e-3;
     for (int round = 0; round < rounds; ++round) {
       const auto system = normal_equations(pose, place, turn);
       if (!system) return false;
-      Eigen::Matrix3d damped = system->information;
+      Eigen::Matrix4d damped = system->information;
       damped.diagonal() *= 1 + damping;
-      const Eigen::Vector3d change = damped.ldlt().solve(system->right);
+      const Eigen::Vector4d change = damped.ldlt().solve(system->right);
       if (!change.allFinite()) return false;
-      const Eigen::Vector3d next = pose + change;
+      const EyeState next = pose + change;
       if (cost(next, place, turn) < system->cost) {
         pose = next;
         damping = std::max(1e-6, damping / 5);
@@ -84,6 +89,7 @@ class ProfileFit {
     double sum = 0;
     for (std::size_t i = 0; i < seen_.rays().size(); ++i) {
       const double r = seen_.rays()[i].elevation - here.elevation[i], v = variance(here.distance[i], 0, 0);
+      if (here.hidden[i]) continue;
       double ratio = kUnlike;
       if (std::isfinite(r))
         ratio += (1 - kUnlike) * std::exp(-r * r / (2 * v)) / std::sqrt(kFullTurn * v) / seen_.arbitrary(i);
@@ -101,14 +107,16 @@ class ProfileFit {
     return chosen;
   }
 
-  std::optional<Prediction> predict(const Eigen::Vector3d& pose) const {
+  std::optional<Prediction> predict(const EyeState& pose) const {
     const double ground = scene_.terrain.height(pose.x(), pose.y());
     if (!std::isfinite(ground)) return {};
     Prediction p;
     for (const SeenHorizon::Ray& ray : seen_.rays()) {
-      const HorizonEdge edge = horizon_at(scene_.terrain, pose.head<2>(), ground + scene_.options.eye,
-                                          pose.z() + ray.bearing, scene_.options);
-      p.elevation.push_back(edge.far > 0 ? std::atan(double(edge.rise)) : std::nan(""));
+      const HorizonEdge edge =
+          horizon_at(scene_.terrain, pose.head<2>(), ground + scene_.options.eye + pose[3],
+                     pose.z() + ray.bearing, scene_.options);
+      p.elevation.push_back(edge.is_known() ? std::atan(double(edge.rise)) : std::nan(""));
+      p.hidden.push_back(edge.possible > edge.rise);
       p.distance.push_back(std::max(double(edge.far), scene_.terrain.cell()));
     }
     return p;
@@ -126,20 +134,24 @@ class ProfileFit {
     return std::min(1.0, distance * seen_.spacing() / (2 * scene_.terrain.cell()));
   }
 
-  double cost(const Eigen::Vector3d& pose, double place, double turn) const {
+  double cost(const EyeState& pose, double place, double turn) const {
     const auto here = predict(pose);
     if (!here) return std::numeric_limits<double>::infinity();
     double sum = 0;
     for (std::size_t i = 0; i < seen_.rays().size(); ++i) sum += ray_cost(*here, i, place, turn);
-    return sum + heading_cost(pose.z());
+    return sum + heading_cost(pose.z()) + pose[3] * pose[3] / (eye_sd() * eye_sd());
   }
 
   double ray_cost(const Prediction& here, std::size_t i, double place, double turn) const {
     const double r = seen_.rays()[i].elevation - here.elevation[i];
+    if (here.hidden[i]) return independence(here.distance[i]);  // what a ray that fits costs on average
     if (!std::isfinite(r)) return kKernel * kKernel;
     const double squares = r * r / variance(here.distance[i], place, turn) / (kKernel * kKernel);
     return independence(here.distance[i]) * kKernel * kKernel * std::log1p(squares);
   }
+
+  /// The DEM errs at the robot as it does at the horizon.
+  double eye_sd() const { return error_; }
 
   double heading_cost(double yaw) const {
     if (!scene_.options.heading) return 0;
@@ -147,16 +159,17 @@ class ProfileFit {
     return r * r;
   }
 
-  std::optional<System> normal_equations(const Eigen::Vector3d& pose, double place, double turn) const {
+  std::optional<System> normal_equations(const EyeState& pose, double place, double turn) const {
     const double step = std::max(0.5 * scene_.terrain.cell(), 0.3 * place),
                  angle = std::max(0.25 * seen_.spacing(), 0.3 * turn);
     const auto here = predict(pose);
     if (!here) return {};
-    std::array<std::optional<Prediction>, 6> moved;
-    for (int k = 0; k < 3; ++k)
+    const EyeState steps(step, step, angle, 0.3 * eye_sd());
+    std::array<std::optional<Prediction>, 8> moved;
+    for (int k = 0; k < 4; ++k)
       for (int side = 0; side < 2; ++side) {
-        Eigen::Vector3d other = pose;
-        other[k] += (side ? 1 : -1) * (k < 2 ? step : angle);
+        EyeState other = pose;
+        other[k] += (side ? 1 : -1) * steps[k];
         moved[static_cast<std::size_t>(2 * k + side)] = predict(other);
         if (!moved[static_cast<std::size_t>(2 * k + side)]) return {};
       }
@@ -167,16 +180,19 @@ class ProfileFit {
       s.cost += ray_cost(*here, i, place, turn);
       if (!std::isfinite(r)) continue;
       const double own = independence(here->distance[i]), squares = r * r / v / (kKernel * kKernel);
-      Eigen::Vector3d j;
-      for (int k = 0; k < 3; ++k)
+      Eigen::Vector4d j;
+      for (int k = 0; k < 4; ++k)
         j[k] = (moved[static_cast<std::size_t>(2 * k + 1)]->elevation[i] -
                 moved[static_cast<std::size_t>(2 * k)]->elevation[i]) /
-               (2 * (k < 2 ? step : angle));
+               (2 * steps[k]);
       if (!j.allFinite()) continue;
       const double weight = own / v / (1 + squares);
       s.information += weight * j * j.transpose();
       s.right += weight * r * j;
     }
+    s.information(3, 3) += 1 / (eye_sd() * eye_sd());
+    s.right[3] -= pose[3] / (eye_sd() * eye_sd());
+    s.cost += pose[3] * pose[3] / (eye_sd() * eye_sd());
     if (scene_.options.heading) {
       const double v = scene_.options.heading_sd * scene_.options.heading_sd;
       const double r = wrap_angle(*scene_.options.heading - pose.z());
@@ -187,17 +203,20 @@ class ProfileFit {
     return s;
   }
 
-  std::optional<SkylineFix> evaluate_fix(const Eigen::Vector3d& pose) const {
+  std::optional<SkylineFix> evaluate_fix(const EyeState& pose) const {
     const auto system = normal_equations(pose, 0, 0);
     const auto here = predict(pose);
     if (!system || !here) return {};
-    const Eigen::LDLT<Eigen::Matrix3d> solver(system->information);
+    const Eigen::LDLT<Eigen::Matrix4d> solver(system->information);
     if (!solver.isPositive() || !(solver.rcond() > 1e-14)) return {};
-    SkylineFix fix{.at = {pose_of(pose), solver.solve(Eigen::Matrix3d::Identity())},
-                   .summits = {},
-                   .matched = 0,
-                   .squares = 0,
-                   .log_false_alarms = 0};
+    SkylineFix fix{
+        .at = {pose_of(pose.head<3>()), solver.solve(Eigen::Matrix4d::Identity()).topLeftCorner<3, 3>()},
+        .summits = {},
+        .matched = 0,
+        .compared = static_cast<int>(std::ranges::count(here->hidden, false)),
+        .squares = 0,
+        .log_false_alarms = 0};
+    if (fix.compared * seen_.spacing() < kMinCover) return {};
     double weights = 0;
     for (std::size_t i = 0; i < seen_.rays().size(); ++i) {
       const double r = seen_.rays()[i].elevation - here->elevation[i], v = variance(here->distance[i], 0, 0);
@@ -207,7 +226,7 @@ class ProfileFit {
       fix.squares += own * r * r / v;
       weights += own;
     }
-    if (fix.matched < kMinMatched * static_cast<double>(seen_.rays().size())) return {};
+    if (fix.matched < kMinMatched * fix.compared) return {};
     fix.at.covariance *= std::max(1.0, fix.squares / std::max(1.0, weights - 3));
     // Between the cells of the DEM the terrain is not known, which all rays share.
     const double grid = kGridError * scene_.options.position_sd;

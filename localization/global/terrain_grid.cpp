@@ -30,6 +30,62 @@ void widen(const TerrainHeight& ground, Eigen::AlignedBox2d& box, double beyond)
       }
 }
 
+constexpr std::uint8_t kOutside = 255;
+
+/// Marks the unknown cells that are connected to the edge of the grid: sea and what lies beyond the DEM.
+Grid<std::uint8_t> find_outside(const Grid<float>& heights) {
+  Grid<std::uint8_t> marks(heights.columns(), heights.rows(), 0);
+  std::vector<std::pair<std::int64_t, std::int64_t>> open;
+  const auto visit = [&](std::int64_t c, std::int64_t r) {
+    if (!heights.contains(c, r) || marks(c, r) || std::isfinite(heights(c, r))) return;
+    marks(c, r) = kOutside;
+    open.emplace_back(c, r);
+  };
+  for (std::int64_t c = 0; c < heights.columns(); ++c) visit(c, 0), visit(c, heights.rows() - 1);
+  for (std::int64_t r = 0; r < heights.rows(); ++r) visit(0, r), visit(heights.columns() - 1, r);
+  while (!open.empty()) {
+    const auto [c, r] = open.back();
+    open.pop_back();
+    visit(c - 1, r), visit(c + 1, r), visit(c, r - 1), visit(c, r + 1);
+  }
+  return marks;
+}
+
+std::optional<float> mean_of_neighbours(const Grid<float>& heights, std::int64_t c, std::int64_t r) {
+  double sum = 0;
+  int known = 0;
+  for (std::int64_t y = r - 1; y <= r + 1; ++y)
+    for (std::int64_t x = c - 1; x <= c + 1; ++x)
+      if (heights.contains(x, y) && std::isfinite(heights(x, y)))
+        sum += static_cast<double>(heights(x, y)), ++known;
+  if (known == 0) return {};
+  return static_cast<float>(sum / known);
+}
+
+/// Fills holes ring by ring from their margins by means of neighbours. Returns the ring of each cell; 0: not
+/// filled.
+Grid<std::uint8_t> fill_holes(Grid<float>& heights, int max_rings) {
+  Grid<std::uint8_t> rings = find_outside(heights);
+  struct Cell {
+    std::int64_t column, row;
+    float height;
+  };
+  std::vector<Cell> ring(1);
+  for (int number = 1; number <= max_rings && !ring.empty(); ++number) {
+    ring.clear();
+    for (std::int64_t r = 0; r < heights.rows(); ++r)
+      for (std::int64_t c = 0; c < heights.columns(); ++c)
+        if (!std::isfinite(heights(c, r)) && rings(c, r) != kOutside)
+          if (const auto h = mean_of_neighbours(heights, c, r)) ring.push_back({c, r, *h});
+    for (const Cell& cell : ring) {
+      heights(cell.column, cell.row) = cell.height;
+      rings(cell.column, cell.row) = static_cast<std::uint8_t>(number);
+    }
+  }
+  std::ranges::replace(rings.cells(), kOutside, std::uint8_t{0});
+  return rings;
+}
+
 }  // namespace
 
 TerrainGrid::TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, double beyond,
@@ -46,6 +102,7 @@ TerrainGrid::TerrainGrid(const TerrainHeight& ground, Eigen::AlignedBox2d box, d
     for (std::int64_t c = 0; c < columns; ++c)
       if (const auto h = ground(area_.min() + cell_ * Eigen::Vector2d(double(c), double(r))))
         heights_(c, r) = static_cast<float>(*h);
+  gaps_ = fill_holes(heights_, kMaxGap);
   blocks_.push_back(heights_);
   for (float& h : blocks_[0].cells())
     if (!std::isfinite(h)) h = kNone;

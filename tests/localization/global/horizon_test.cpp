@@ -74,6 +74,38 @@ TEST(TerrainGrid, HoldsAllKnownGroundAndItsHighest) {
   EXPECT_TRUE(TerrainGrid(hills, {}, 100).area().isEmpty());
 }
 
+/// A plain that rises to a wall in the east; a hole of 300 m in it, and sea without data in the west.
+std::optional<double> wall_with_a_hole(const Eigen::Vector2d& p) {
+  if (p.x() < 0 || p.y() < 0 || p.x() > 10000 || p.y() > 10000 || p.x() < 1000) return {};
+  if ((p - Eigen::Vector2d(8000, 5000)).norm() < 150) return {};
+  return p.x() < 8000 ? 0.0 : 0.5 * (p.x() - 8000);
+}
+
+TEST(TerrainGrid, HolesAreFilledAndSeaIsNot) {
+  const TerrainGrid grid(wall_with_a_hole, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), {10000, 10000}), 0,
+                         200);
+  const auto hole = grid.surface(8000, 5000);
+  EXPECT_TRUE(std::isnan(grid.height(8000, 5000)));
+  EXPECT_GT(hole.gap, 100);
+  EXPECT_LT(hole.gap, 250);
+  EXPECT_NEAR(hole.height, 20, 20);
+  EXPECT_TRUE(std::isnan(grid.surface(500, 5000).height));
+  EXPECT_EQ(grid.surface(5000, 5000).gap, 0);
+}
+
+TEST(Horizon, IsUnknownWhereAHoleMayHideIt) {
+  const TerrainGrid grid(wall_with_a_hole, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), {10000, 10000}), 0,
+                         200);
+  const SkylineOptions o{.body_radius = 0, .refraction = 0};
+  const Eigen::Vector2d low(5000, 5000), near(7700, 5000);
+  // From afar the wall behind the hole is higher than all that may stand in it; from near it may be either.
+  EXPECT_TRUE(horizon_at(grid, low, 2, 0, o).is_known());
+  EXPECT_FALSE(horizon_at(grid, near, 2, 0, o).is_known());
+  EXPECT_TRUE(horizon_at(grid, near, 2, 1, o).is_known());
+  EXPECT_FALSE(horizon_at(grid, low, 2, kTurn / 2, o).far > 0 &&
+               horizon_at(grid, low, 2, kTurn / 2, o).rise > 0);
+}
+
 TEST(Horizon, IsThatOfTheTwin) {
   const SkylineOptions o = moon();
   for (std::uint64_t seed = 1; seed < 5; ++seed) {
