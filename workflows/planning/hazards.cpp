@@ -188,6 +188,53 @@ void check(const HazardMapRequest& request) {
                {.help = "", .min = 16, .max = 8192});
 }
 
+std::map<std::string, std::string> metadata(const HazardMapRequest& request,
+                                            const planning::HazardRequest& hazard,
+                                            const HazardMapResult& result) {
+  const planning::UndetectedRocks& rocks = hazard.undetected;
+  return {{"WAYMARK_VERSION", program_version()},
+          {"VEHICLE", hazard.vehicle.name},
+          {"BASE_RADIUS", fmt::format("{:g}", hazard.vehicle.base_radius())},
+          {"HEIGHT_SD", fmt::format("{:g}", hazard.errors.sd)},
+          {"HEIGHT_CORRELATION", fmt::format("{:g}", hazard.errors.correlation)},
+          {"CLASSES", "0 safe, 1 uncertain, 2 hazard, 3 unknown"},
+          {"CLASS_LIMITS", fmt::format("{:g} {:g}", request.min_uncertain, request.min_hazard)},
+          {"LANDING_ELLIPSE", request.landing_ellipse},
+          {"SUN", request.sun},
+          {"ROCK_COVER", rocks.known ? fmt::format("{:.4g}", rocks.cover.k) : "unknown"},
+          {"DETECTED_DIAMETER", fmt::format("{:.4g}", rocks.detected_diameter)},
+          {"UNDETECTED_PER_METRE", fmt::format("{:.4g}", result.undetected_per_metre.value)}};
+}
+
+/// Writes the style, the polygons and the map of Nav2 beside the raster.
+void write_companions(const HazardMapRequest& request, const Crs& crs) {
+  write_file(fs::path(request.output).replace_extension(".qml"), hazard_style());
+  const int bands = static_cast<int>(planning::kHazardBands);
+  if (!request.polygons.empty())
+    exporters::write_class_polygons(request.polygons, "hazard", request.output, bands, kClassNames, crs);
+  if (!request.nav2.empty())
+    exporters::write_occupancy_map(request.nav2, request.output, {.probability = bands - 1, .classes = bands},
+                                   crs);
+}
+
+std::string summary_of(const HazardMapRequest& request, const GridGeometry& grid,
+                       const planning::HazardRequest& hazard, const HazardMapResult& result) {
+  const auto total = static_cast<double>(grid.cells());
+  std::string text = fmt::format("{}: {} x {} cells for {}, {} objects\n", request.output, grid.columns,
+                                 grid.rows, hazard.vehicle.name, result.objects);
+  for (std::size_t i = 0; i < result.cells.size(); ++i)
+    text += fmt::format("  {:<9} {:6.2f} %\n", kClassNames[i],
+                        100 * static_cast<double>(result.cells[i]) / total);
+  const planning::UndetectedRocks& rocks = hazard.undetected;
+  if (rocks.known)
+    text += fmt::format(
+        "  rocks cover {:.3g} +- {:.2g} of the terrain; undetected hazardous rocks: {:.3g} +- {:.2g} per km "
+        "driven\n",
+        rocks.cover.k, rocks.cover.sd, 1000 * result.undetected_per_metre.value,
+        1000 * result.undetected_per_metre.sd);
+  return text;
+}
+
 }  // namespace
 
 std::vector<std::string> hazard_class_names() {
@@ -249,40 +296,9 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
           ++result.cells.at(static_cast<std::size_t>(c));
       },
       file, callbacks);
-  file.commit(
-      {{"WAYMARK_VERSION", program_version()},
-       {"VEHICLE", vehicle.name},
-       {"BASE_RADIUS", fmt::format("{:g}", vehicle.base_radius())},
-       {"HEIGHT_SD", fmt::format("{:g}", hazard.errors.sd)},
-       {"HEIGHT_CORRELATION", fmt::format("{:g}", hazard.errors.correlation)},
-       {"CLASSES", "0 safe, 1 uncertain, 2 hazard, 3 unknown"},
-       {"CLASS_LIMITS", fmt::format("{:g} {:g}", request.min_uncertain, request.min_hazard)},
-       {"LANDING_ELLIPSE", request.landing_ellipse},
-       {"SUN", request.sun},
-       {"ROCK_COVER", hazard.undetected.known ? fmt::format("{:.4g}", hazard.undetected.cover.k) : "unknown"},
-       {"DETECTED_DIAMETER", fmt::format("{:.4g}", hazard.undetected.detected_diameter)},
-       {"UNDETECTED_PER_METRE", fmt::format("{:.4g}", result.undetected_per_metre.value)}});
-  write_file(fs::path(request.output).replace_extension(".qml"), hazard_style());
-  const int bands_count = static_cast<int>(planning::kHazardBands);
-  if (!request.polygons.empty())
-    exporters::write_class_polygons(request.polygons, "hazard", request.output, bands_count, kClassNames,
-                                    grid.where.crs);
-  if (!request.nav2.empty())
-    exporters::write_occupancy_map(request.nav2, request.output,
-                                   {.probability = bands_count - 1, .classes = bands_count}, grid.where.crs);
-  const auto total = static_cast<double>(grid.cells());
-  std::string text = fmt::format("{}: {} x {} cells for {}, {} objects\n", request.output, grid.columns,
-                                 grid.rows, vehicle.name, result.objects);
-  for (std::size_t i = 0; i < result.cells.size(); ++i)
-    text += fmt::format("  {:<9} {:6.2f} %\n", kClassNames[i],
-                        100 * static_cast<double>(result.cells[i]) / total);
-  if (hazard.undetected.known)
-    text += fmt::format(
-        "  rocks cover {:.3g} +- {:.2g} of the terrain; undetected hazardous rocks: {:.3g} +- {:.2g} per km "
-        "driven\n",
-        hazard.undetected.cover.k, hazard.undetected.cover.sd, 1000 * result.undetected_per_metre.value,
-        1000 * result.undetected_per_metre.sd);
-  callbacks.summary(text);
+  file.commit(metadata(request, hazard, result));
+  write_companions(request, grid.where.crs);
+  callbacks.summary(summary_of(request, grid, hazard, result));
   return result;
 }
 

@@ -170,6 +170,85 @@ planning::InformationField compute_field(const planning::RouteCells& cells, cons
   return computed;
 }
 
+void check_limit(const RouteRequest& request, double start_sd) {
+  if (request.limit_sigma > 0 && request.limit_sigma < start_sd)
+    throw Error(ErrorCode::usage,
+                fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", start_sd,
+                            request.limit_sigma),
+                "", "raise --limit-sigma, or give the start's --start-sd");
+}
+
+/// The legs from waypoint to waypoint, each of which begins with the belief at the end of the one before.
+struct LegSequence {
+  const RouteRequest& request;
+  LegPlanner& planner;
+  const std::vector<Waypoint>& points;
+  const std::vector<std::int64_t>& stops;
+  planning::Symmetric3 start;
+
+  /// Searches each leg by `search`, which takes at most `max_searches` searches. Throws if there is no way.
+  template <class Search>
+  std::vector<planning::Route> follow(int max_searches, Search&& search) const {
+    planning::RouteProblem& problem = planner.problem;
+    std::vector<planning::Route> legs;
+    problem.start = start;
+    planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
+    problem.heading.reset();
+    if (points[0].yaw)
+      problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
+    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+      planner.begin_leg(stops[i], stops[i + 1]);
+      planner.progress->begin_leg(max_searches);
+      planner.worlds_agree = i == 0;
+      if (!std::isfinite(problem.to_go[planning::slot(problem.from)]))
+        fail_between(request, points[i], points[i + 1]);
+      legs.push_back(search());
+      planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
+      problem.start = legs.back().nodes.back().covariance;
+      problem.heading = legs.back().nodes.back().heading;
+      planner.progress->end_leg();
+    }
+    problem.start = start;
+    return legs;
+  }
+};
+
+/// Returns a length, m, that no route within the limit is shorter than: cells that the relaxed test excludes
+/// cannot lie on it.
+double min_length(const RouteRequest& request, LegPlanner& planner, const planning::RouteCells& cells,
+                  const std::vector<std::int64_t>& stops) {
+  planning::RouteProblem& problem = planner.problem;
+  double length = 0;
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    problem.from = stops[i], problem.to = stops[i + 1];
+    std::vector<char> reached = problem.passable;
+    if (i == 0) {
+      const std::vector<double> bound = planner.min_sd_in_any_world(request.limit_sigma);
+      for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
+    }
+    length += planning::distances_to(cells, reached, problem.to)[planning::slot(problem.from)];
+  }
+  return length;
+}
+
+std::string summary_of(const RouteRequest& request, const RouteResult& result) {
+  const PlannedRoute& best = result.routes.front();
+  std::string text = fmt::format(
+      "{}: {:.1f} m, worst sd {:.2f} m, at the goal {:.2f} m, {:.0f} m without a landmark in sight\n"
+      "  over {} worlds: worst sd {:.2f} m on average, {:.2f} m in the worst tenth\n"
+      "  shortest route: {:.1f} m, worst sd {:.2f} m\n"
+      "  on cells of {:g} m and eight headings",
+      request.output, best.length, best.worst_sd, best.final_sd, best.without_landmarks, request.worlds,
+      best.worlds_mean, best.worlds_worst_tenth, result.shortest.length, result.shortest.worst_sd,
+      request.cell);
+  if (request.limit_sigma > 0)
+    text += fmt::format(", no route that keeps the limit is shorter than {:.1f} m", result.lower_bound);
+  if (request.keep_landmarks > 0)
+    text += fmt::format(", {:.1f} m with fewer than {:g} landmarks in sight", best.outside,
+                        request.keep_landmarks);
+  return text;
+}
+
 }  // namespace
 
 RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) {
@@ -204,14 +283,9 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   double sd = 0.1, yaw_sd = 2 * kRadiansPerDegree;
   planner.odometry = read_odometry(request, map, sd, yaw_sd);
   if (request.start_sd > 0) sd = request.start_sd;
-  if (request.limit_sigma > 0 && request.limit_sigma < sd)
-    throw Error(
-        ErrorCode::usage,
-        fmt::format("the sd at the start, {:g} m, exceeds the limit of {:g} m", sd, request.limit_sigma), "",
-        "raise --limit-sigma, or give the start's --start-sd");
+  check_limit(request, sd);
   problem.noise = planner.odometry.white();
   problem.start = {sd * sd, 0, sd * sd, 0, 0, yaw_sd * yaw_sd};
-  const planning::Symmetric3 start = problem.start;
 
   const auto leg_count = static_cast<std::int64_t>(stops.size() - 1);
   const std::int64_t more_routes = std::min<std::int64_t>(request.alternatives - 1, 1000);
@@ -219,39 +293,18 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
                          leg_count * (1 + planner.max_searches() + kMaxSearches * more_routes));
   planner.progress = &progress;
   problem.advanced = [&](double done) { progress.advance(done); };
-  const auto legs_with = [&](int max_searches, auto&& search) {
-    std::vector<planning::Route> legs;
-    problem.start = start;
-    planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
-    problem.heading.reset();
-    if (points[0].yaw)
-      problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      planner.begin_leg(stops[i], stops[i + 1]);
-      progress.begin_leg(max_searches);
-      planner.worlds_agree = i == 0;
-      if (!std::isfinite(problem.to_go[planning::slot(problem.from)]))
-        fail_between(request, points[i], points[i + 1]);
-      legs.push_back(search());
-      planning::follow_route(*planner.before, problem, planner.landmarks, planner.sensing, legs.back());
-      problem.start = legs.back().nodes.back().covariance;
-      problem.heading = legs.back().nodes.back().heading;
-      progress.end_leg();
-    }
-    problem.start = start;
-    return legs;
-  };
+  const LegSequence sequence{request, planner, points, stops, problem.start};
 
   RouteResult result;
   result.shortest =
-      describe(planner, map, uids, legs_with(1, [&] { return *planner.search({.labels = 1}); }));
+      describe(planner, map, uids, sequence.follow(1, [&] { return *planner.search({.labels = 1}); }));
   result.routes.push_back(
-      describe(planner, map, uids, legs_with(planner.max_searches(), [&] { return planner.leg(); })));
+      describe(planner, map, uids, sequence.follow(planner.max_searches(), [&] { return planner.leg(); })));
   for (std::int64_t i = 1; i < request.alternatives; ++i) {
     // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
     const double limit = 0.9 * result.routes.back().worst_sd;
     bool found = true;
-    const auto legs = legs_with(kMaxSearches, [&] {
+    const auto legs = sequence.follow(kMaxSearches, [&] {
       auto route = planner.keep(limit);
       found = found && route;
       return route ? *route : *planner.search({.labels = 1});
@@ -259,36 +312,11 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
     if (!found) break;
     result.routes.push_back(describe(planner, map, uids, legs));
   }
-  if (request.limit_sigma > 0) {
-    // Cells that the relaxed test excludes cannot lie on the route.
-    for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
-      problem.from = stops[i], problem.to = stops[i + 1];
-      std::vector<char> reached = problem.passable;
-      if (i == 0) {
-        const std::vector<double> bound = planner.min_sd_in_any_world(request.limit_sigma);
-        for (std::size_t k = 0; k < reached.size(); ++k) reached[k] = std::isfinite(bound[k]) ? 1 : 0;
-      }
-      result.lower_bound += planning::distances_to(cells, reached, problem.to)[planning::slot(problem.from)];
-    }
-  }
+  if (request.limit_sigma > 0) result.lower_bound = min_length(request, planner, cells, stops);
   progress.finish();
   const std::string clearance = add_clearance(request, map, result);
   write_routes(request, map.crs(), result);
-  const PlannedRoute& best = result.routes.front();
-  std::string text = fmt::format(
-      "{}: {:.1f} m, worst sd {:.2f} m, at the goal {:.2f} m, {:.0f} m without a landmark in sight\n"
-      "  over {} worlds: worst sd {:.2f} m on average, {:.2f} m in the worst tenth\n"
-      "  shortest route: {:.1f} m, worst sd {:.2f} m\n"
-      "  on cells of {:g} m and eight headings",
-      request.output, best.length, best.worst_sd, best.final_sd, best.without_landmarks, request.worlds,
-      best.worlds_mean, best.worlds_worst_tenth, result.shortest.length, result.shortest.worst_sd,
-      request.cell);
-  if (request.limit_sigma > 0)
-    text += fmt::format(", no route that keeps the limit is shorter than {:.1f} m", result.lower_bound);
-  if (request.keep_landmarks > 0)
-    text += fmt::format(", {:.1f} m with fewer than {:g} landmarks in sight", best.outside,
-                        request.keep_landmarks);
-  callbacks.summary(text + "\n" + clearance);
+  callbacks.summary(summary_of(request, result) + "\n" + clearance);
   return result;
 }
 
