@@ -6,16 +6,8 @@
 #include <vector>
 #include "core/grid.hpp"
 #include "testbed/forest/plant_forest.hpp"
+#include "testbed/laser_return.hpp"
 namespace waymark::testbed {
-
-/// Return of an airborne laser scanner. Metres, GridFrame.
-struct LaserReturn {
-  double x = 0, y = 0, z = 0;
-  std::uint8_t number = 1, of = 1;  ///< return `number` of `of`, from 1
-  std::uint8_t kind = 1;  ///< ASPRS class: 2 ground, 3 low (< 2 m), 4 medium (< 5 m), 5 high vegetation
-  std::uint16_t intensity = 0;
-  double time = 0;  ///< seconds
-};
 
 /// Rasters of a survey flight; row 0 is the northernmost. NaN: no return.
 struct ForestRasters {

@@ -9,7 +9,7 @@
 namespace waymark::testbed {
 namespace {
 
-constexpr double kHouseDepth = 9, kAlley = 3;                      // m
+constexpr double kHouseDepth = 9, kAlley = 3, kGap = 1;            // m
 constexpr double kKerb = 3.5;                                      // m from the facade to the kerb
 constexpr double kHouseHeight = 8, kSignMiddle = 2.2;              // m above the pavement
 constexpr double kCarLength = 4.4, kCarWidth = 1.8, kSpace = 5.5;  // m
@@ -25,6 +25,7 @@ class StreetSide {
         drive_(drive_seed, side > 0 ? "cars north" : "cars south"),
         surfaces_(seed, side > 0 ? "surfaces north" : "surfaces south"),
         vans_(drive_seed, side > 0 ? "vans north" : "vans south"),
+        roofs_(seed, side > 0 ? "roofs north" : "roofs south"),
         town_(town) {}
 
   void plan() {
@@ -96,13 +97,19 @@ class StreetSide {
                                 .gloss = surfaces_.bernoulli(0.3) ? 0.5 : 0};
       for (auto wall = town_.walls.end() - 4; wall != town_.walls.end(); ++wall)
         wall->top = kHouseHeight, wall->surface = surface, wall->has_windows = true;
+      const double slope = roofs_.uniform(0.4, 0.9);
+      town_.roofs.push_back(
+          {.middle = {x + length / 2, y0 + kHouseDepth / 2},
+           .half = {length / 2 + std::min(model_.overhang, kGap / 2), kHouseDepth / 2 + model_.overhang},
+           .ridge = kHouseHeight + slope * kHouseDepth / 2,
+           .slope = slope});
       town_.landmarks.push_back({.type = "wall",
                                  .kind = {},
                                  .at = {x + length / 2, side_ * front},
                                  .direction = side_ > 0 ? kStreetHalfTurn : 0,
                                  .height = kHouseHeight,
                                  .length = length});
-      x += length + (random_.bernoulli(0.5) ? kAlley : 1);
+      x += length + (random_.bernoulli(0.5) ? kAlley : kGap);
     }
   }
 
@@ -167,7 +174,7 @@ class StreetSide {
 
   const StreetModel& model_;
   double side_;
-  Random random_, drive_, surfaces_, vans_;
+  Random random_, drive_, surfaces_, vans_, roofs_;
   Town& town_;
 };
 

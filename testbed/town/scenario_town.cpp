@@ -25,6 +25,11 @@ void describe_street(Scenario& s, OptionVisitor& field) {
        .max = 1e3});
   field("parked", m.parked,
         {.help = "Fraction of the parking spaces taken, others in each drive", .min = 0, .max = 1});
+  field("overhang", m.overhang, {.help = "Of the eaves beyond the walls, metres", .min = 0, .max = 2});
+  field("survey_pulses", m.survey_pulses,
+        {.help = "Pulses per square metre of an airborne laser survey; 0: none", .min = 0, .max = 200});
+  field("survey_shift_sd", m.survey_shift_sd,
+        {.help = "Standard deviation of its shift as a whole, metres", .min = 0, .max = 10});
 }
 
 void describe_hall(Scenario& s, OptionVisitor& field) {

@@ -42,6 +42,12 @@ struct TownCrown {
   double radius = 1.5;
 };
 
+/// Gabled roof with its ridge along x, eaves included. Only surveys from the air see it.
+struct TownRoof {
+  Eigen::Vector2d middle = Eigen::Vector2d::Zero(), half = Eigen::Vector2d::Zero();  ///< half: of its sides
+  double ridge = 10, slope = 0.6;  ///< m above the road; tangent
+};
+
 /// First surfaces along a ray in the plane, at any height.
 struct TownHit {
   double range = 0, along_wall = 0;  ///< m; along_wall: from the first end of a wall
@@ -68,6 +74,7 @@ struct Town {
   std::vector<TownLandmark> landmarks;
   std::vector<Eigen::Vector2d> path;  ///< a point every half metre
   std::vector<TownCrown> crowns;
+  std::vector<TownRoof> roofs;
   /// Of a street along x: |y| of the kerbs, m, and the heights of the pavements in the south and the north.
   double kerb = 1e9, kerb_south = 0, kerb_north = 0;
 

@@ -14,6 +14,7 @@
 #include "core/output_error.hpp"
 #include "core/random.hpp"
 #include "core/text_file.hpp"
+#include "exporters/las_file.hpp"
 #include "exporters/raster/image_file.hpp"
 #include "exporters/raster/raster_file.hpp"
 #include "exporters/vector/track_file.hpp"
@@ -24,6 +25,7 @@
 #include "testbed/scenario.hpp"
 #include "testbed/scene_files.hpp"
 #include "testbed/town/town_drive.hpp"
+#include "testbed/town/town_survey.hpp"
 #include "workflows/mapping/image_stages.hpp"
 #include "workflows/simulation/route_drive.hpp"
 #include "workflows/simulation/write_forest.hpp"
@@ -203,6 +205,20 @@ SimulateResult simulate_forest(const SimulateRequest& request, const testbed::Sc
   return {.trees = forest.trees.size()};
 }
 
+/// Writes the airborne laser survey of a street. Returns the number of returns.
+std::size_t write_survey(const fs::path& file, const testbed::Town& town, const testbed::StreetModel& model,
+                         std::uint64_t seed) {
+  exporters::LasFile cloud(file, Crs::local(), 0, 0);
+  std::size_t returns = 0;
+  testbed::survey_town(town, model, seed, [&](std::span<const testbed::LaserReturn> row) {
+    returns += row.size();
+    for (const testbed::LaserReturn& r : row)
+      cloud.add({.x = r.x, .y = r.y, .z = r.z, .number = r.number, .of = r.of, .kind = r.kind});
+  });
+  cloud.close();
+  return returns;
+}
+
 /// Writes a street or a floor: the log and the truth. Without a section drive the robot is that of
 /// town_settings().
 SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scenario& scenario,
@@ -220,6 +236,7 @@ SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scen
   const testbed::Town town = scenario.street.on ? testbed::plan_street(scenario.street, seed, drive_seed)
                                                 : testbed::plan_hall(scenario.hall, seed, drive_seed);
   testbed::TownDrive drive;
+  std::size_t returns = 0;
   write_scene(request.folder, [&](const fs::path& folder) {
     make_folder(folder / "truth");
     if (scenario.drive.on && scenario.drive.scanner.on) make_folder(folder / "points");
@@ -229,10 +246,13 @@ SimulateResult simulate_town(const SimulateRequest& request, const testbed::Scen
     write_file(folder / "log.jsonl", drive.log);
     write_file(folder / "truth/track.csv", drive.track);
     write_file(folder / "truth/landmarks.csv", testbed::town_table(town));
+    if (scenario.street.on && scenario.street.survey_pulses > 0)
+      returns = write_survey(folder / "survey.las", town, scenario.street, seed);
     write_file(folder / "scenario.json", testbed::scenario_json(scenario));
   });
-  callbacks.summary(fmt::format("{}: {} landmarks, a drive of {:.0f} m in {:.0f} s\n", request.folder,
-                                town.landmarks.size(), drive.distance, drive.seconds));
+  callbacks.summary(fmt::format("{}: {} landmarks, a drive of {:.0f} m in {:.0f} s{}\n", request.folder,
+                                town.landmarks.size(), drive.distance, drive.seconds,
+                                returns ? fmt::format(", {} laser returns", returns) : ""));
   return {.landmarks = town.landmarks.size()};
 }
 

@@ -189,5 +189,24 @@ TEST_F(Buildings, BadInputIsRefused) {
   EXPECT_EQ(std::filesystem::exists(folder_ / "town.gpkg"), false);
 }
 
+TEST_F(Buildings, LocateARobotInTheStreet) {
+  write_text(folder_ / "street.json", R"({"waymark_scenario": 1, "name": "Street", "seed": 911,
+    "street": {"length": 80, "survey_pulses": 8}})");
+  const std::string site = folder_ / "site";
+  ASSERT_EQ(waymark({"simulate", folder_ / "street.json", "-o", site}).code, 0);
+  const Outcome made = buildings({"--las", site + "/survey.las", "--crs", "local", "--overhang", "0.3"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const Outcome driven = waymark({"localize", folder_ / "town.gpkg", site + "/log.jsonl", "-o",
+                                  folder_ / "track.csv", "--method", "ekf", "--ids", "unknown"});
+  ASSERT_EQ(driven.code, 0) << driven.err;
+  const Outcome judged = waymark(
+      {"evaluate", "track", folder_ / "track.csv", "--truth", site + "/truth/track.csv", "--format", "json"});
+  ASSERT_EQ(judged.code, 0) << judged.err;
+  const json result = json::parse(judged.out);
+  EXPECT_LT(double(result["ate_rmse"]), 0.4) << judged.out;
+  EXPECT_LT(double(result["heading_rmse_deg"]), 1) << judged.out;
+  EXPECT_LT(double(result["lost"]), 0.2) << judged.out;
+}
+
 }  // namespace
 }  // namespace waymark::test

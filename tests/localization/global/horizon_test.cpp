@@ -74,36 +74,37 @@ TEST(TerrainGrid, HoldsAllKnownGroundAndItsHighest) {
   EXPECT_TRUE(TerrainGrid(hills, {}, 100).area().isEmpty());
 }
 
-/// A plain that rises to a wall in the east; a hole of 300 m in it, and sea without data in the west.
-std::optional<double> wall_with_a_hole(const Eigen::Vector2d& p) {
-  if (p.x() < 0 || p.y() < 0 || p.x() > 10000 || p.y() > 10000 || p.x() < 1000) return {};
-  if ((p - Eigen::Vector2d(8000, 5000)).norm() < 150) return {};
-  return p.x() < 8000 ? 0.0 : 0.5 * (p.x() - 8000);
+/// A plain below a plateau in the east; holes of 300 m in the plain and in the edge of the plateau; sea
+/// without data in the west.
+std::optional<double> plateau_with_holes(const Eigen::Vector2d& p) {
+  if (p.x() < 1000 || p.y() < 0 || p.x() > 10000 || p.y() > 10000) return {};
+  for (const double x : {5000, 8300})
+    if ((p - Eigen::Vector2d(x, 5000)).norm() < 150) return {};
+  return std::clamp(0.5 * (p.x() - 8000), 0.0, 150.0);
 }
 
+const Eigen::AlignedBox2d kAllGround(Eigen::Vector2d(0, 0), Eigen::Vector2d(10000, 10000));
+
 TEST(TerrainGrid, HolesAreFilledAndSeaIsNot) {
-  const TerrainGrid grid(wall_with_a_hole, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), {10000, 10000}), 0,
-                         200);
-  const auto hole = grid.surface(8000, 5000);
-  EXPECT_TRUE(std::isnan(grid.height(8000, 5000)));
+  const TerrainGrid grid(plateau_with_holes, kAllGround, 0, 200);
+  const TerrainGrid::Sample hole = grid.surface(8300, 5000);
+  EXPECT_TRUE(std::isnan(grid.height(8300, 5000)));
   EXPECT_GT(hole.gap, 100);
   EXPECT_LT(hole.gap, 250);
-  EXPECT_NEAR(hole.height, 20, 20);
+  EXPECT_NEAR(hole.height, 120, 30);
   EXPECT_TRUE(std::isnan(grid.surface(500, 5000).height));
-  EXPECT_EQ(grid.surface(5000, 5000).gap, 0);
+  EXPECT_EQ(grid.surface(3000, 5000).gap, 0);
 }
 
 TEST(Horizon, IsUnknownWhereAHoleMayHideIt) {
-  const TerrainGrid grid(wall_with_a_hole, Eigen::AlignedBox2d(Eigen::Vector2d(0, 0), {10000, 10000}), 0,
-                         200);
+  const TerrainGrid grid(plateau_with_holes, kAllGround, 0, 200);
   const SkylineOptions o{.body_radius = 0, .refraction = 0};
-  const Eigen::Vector2d low(5000, 5000), near(7700, 5000);
-  // From afar the wall behind the hole is higher than all that may stand in it; from near it may be either.
-  EXPECT_TRUE(horizon_at(grid, low, 2, 0, o).is_known());
-  EXPECT_FALSE(horizon_at(grid, near, 2, 0, o).is_known());
-  EXPECT_TRUE(horizon_at(grid, near, 2, 1, o).is_known());
-  EXPECT_FALSE(horizon_at(grid, low, 2, kTurn / 2, o).far > 0 &&
-               horizon_at(grid, low, 2, kTurn / 2, o).rise > 0);
+  // What may stand in the hole of the plateau is higher than the plateau behind it; in that of the plain it
+  // is lower.
+  EXPECT_FALSE(horizon_at(grid, {7000, 5000}, 2, 0, o).is_known());
+  EXPECT_TRUE(horizon_at(grid, {7000, 5000}, 2, 0.5, o).is_known());
+  EXPECT_TRUE(horizon_at(grid, {2000, 4700}, 2, 0.1, o).is_known());
+  EXPECT_EQ(horizon_at(grid, {2000, 4700}, 2, 0.1, o).possible > 0, true);
 }
 
 TEST(Horizon, IsThatOfTheTwin) {
