@@ -2,16 +2,10 @@
 #include "workflows/viewing/web_map.hpp"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <memory>
-#include <numeric>
 #include <set>
 
 #include "core/atomic_file.hpp"
@@ -19,15 +13,14 @@
 #include "core/text_file.hpp"
 #include "exporters/records/map_extent.hpp"
 #include "exporters/report/map_drawing.hpp"
-#include "exporters/web/pmtiles_file.hpp"
 #include "exporters/web/terrain_tiles.hpp"
 #include "exporters/web/thinning.hpp"
 #include "exporters/web/web_page.hpp"
 #include "exporters/web/web_style.hpp"
 #include "geodb/map_store.hpp"
-#include "pipeline/engine/progress_meter.hpp"
 #include "pipeline/engine/sha256.hpp"
 #include "workflows/query/map_of_area.hpp"
+#include "workflows/viewing/write_web_tiles.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -66,97 +59,6 @@ std::map<std::string, std::string> read_library(const fs::path& folder) {
     files.emplace(name, std::move(content));
   }
   return files;
-}
-
-/// Makes the contents of tiles on all threads and adds them to an archive in order.
-struct TileMaker {
-  tbb::task_arena arena;
-  const Callbacks& callbacks;
-
-  void operator()(PmtilesFile& file, const std::string& stage, std::size_t count,
-                  const std::function<std::uint64_t(std::size_t)>& id,
-                  const std::function<std::string(std::size_t)>& content) {
-    const auto batch = static_cast<std::size_t>(16 * arena.max_concurrency());
-    pipeline::ProgressMeter meter(callbacks.progress, stage, static_cast<std::int64_t>(count));
-    for (std::size_t first = 0; first < count; first += batch) {
-      std::vector<std::string> made(std::min(batch, count - first));
-      arena.execute([&] {
-        tbb::parallel_for(std::size_t{0}, made.size(), [&](std::size_t i) {
-          made[i] = content(first + i);
-          meter.add(1);
-        });
-      });
-      for (std::size_t i = 0; i < made.size(); ++i) file.add(id(first + i), made[i]);
-    }
-    meter.finish();
-  }
-};
-
-exporters::PmtilesHeader header_of(const exporters::WebBounds& bounds, int max_zoom) {
-  exporters::PmtilesHeader header{.max_zoom = max_zoom};
-  const bool crosses_edge = bounds.west < 0 || bounds.east > 1;
-  // Readers skip tiles that the bounds only touch, so landmarks on the edge of a tile need a margin.
-  constexpr double margin = 1e-6;
-  header.bounds = {crosses_edge ? -180 : exporters::web_longitude(bounds.west) - margin,
-                   exporters::web_latitude(bounds.south) - margin,
-                   crosses_edge ? 180 : exporters::web_longitude(bounds.east) + margin,
-                   exporters::web_latitude(bounds.north) + margin};
-  const double middle = (bounds.west + bounds.east) / 2;
-  header.centre = {exporters::web_longitude(middle - std::floor(middle)),
-                   exporters::web_latitude((bounds.north + bounds.south) / 2)};
-  header.centre_zoom = max_zoom;
-  return header;
-}
-
-std::int64_t write_landmarks(TileMaker& make, PmtilesFile& file, const exporters::WebLandmarks& all,
-                             const exporters::WebStyle& style, int max_zoom) {
-  for (int zoom = 0; zoom <= max_zoom; ++zoom) {
-    const auto shown =
-        zoom < max_zoom ? exporters::thin_out(all.landmarks, zoom) : exporters::all_of(all.landmarks);
-    const auto tiles = exporters::tiles_of(all.landmarks, shown, zoom);
-    make(
-        file, fmt::format("landmarks, zoom {}", zoom), tiles.size(),
-        [&](std::size_t i) { return exporters::pmtiles_id(tiles[i].id); },
-        [&](std::size_t i) {
-          return exporters::landmark_tile(all, std::span(shown).subspan(tiles[i].first, tiles[i].count),
-                                          zoom);
-        });
-  }
-  exporters::PmtilesHeader header = header_of(style.bounds, max_zoom);
-  header.metadata = exporters::landmark_metadata(all, style, max_zoom);
-  file.finish(header);
-  return static_cast<std::int64_t>(file.tile_count());
-}
-
-std::int64_t write_shapes(TileMaker& make, PmtilesFile& file, const exporters::WebShapes& all,
-                          const std::string& title, int top) {
-  for (int zoom = 0; zoom <= top; ++zoom) {
-    const auto tiles = exporters::shape_tiles(all, zoom, top);
-    make(
-        file, fmt::format("areas, zoom {}", zoom), tiles.size(),
-        [&](std::size_t i) { return exporters::pmtiles_id(tiles[i].id); },
-        [&](std::size_t i) { return exporters::shape_tile(all, tiles[i], top); });
-  }
-  exporters::PmtilesHeader header = header_of(exporters::bounds_of(all), top);
-  header.metadata = exporters::shape_metadata(all, title, top);
-  file.finish(header);
-  return static_cast<std::int64_t>(file.tile_count());
-}
-
-std::int64_t write_terrain(TileMaker& make, PmtilesFile& file, const exporters::TerrainTiles& terrain,
-                           const Crs& crs, WebPlane plane) {
-  const std::vector<exporters::TileId> tiles = terrain.tiles();
-  tbb::enumerable_thread_specific<std::unique_ptr<WebProjection>> projections(
-      [&] { return std::make_unique<WebProjection>(crs, plane); });
-  make(
-      file, "terrain", tiles.size(), [&](std::size_t i) { return exporters::pmtiles_id(tiles[i]); },
-      [&](std::size_t i) { return terrain.tile(tiles[i], *projections.local()); });
-  exporters::PmtilesHeader header = header_of(terrain.bounds(), terrain.max_zoom());
-  header.tiles = exporters::PmtilesHeader::Tiles::png;
-  header.gzipped = false;
-  header.metadata = R"({"name":"terrain","encoding":"terrarium"})";
-  file.finish(header);
-  return static_cast<std::int64_t>(file.tile_count());
 }
 
 /// Returns the terrain of a map at no more than the resolution of its files.
@@ -210,6 +112,35 @@ WebMapResult make_web_map_of_area(const WebMapRequest& request, const Callbacks&
   return make_web_map(of_part, callbacks);
 }
 
+exporters::WebLandmarks read_landmarks(const WebMapRequest& request, const geodb::MapStore& map,
+                                       const WebProjection& projection, const Callbacks& callbacks) {
+  auto all = exporters::read_web_landmarks(map, projection, request.types, request.min_confidence);
+  if (all.landmarks.empty())
+    throw Error(ErrorCode::input,
+                all.outside > 0 ? "all landmarks lie beyond the edges of web maps"
+                                : "the map has no landmarks to show",
+                request.map, "check the map with: waymark query " + request.map);
+  if (all.outside > 0)
+    callbacks.warning(fmt::format("{} landmarks lie beyond {:.2f} degrees of latitude and are not on the map",
+                                  all.outside, exporters::kMaxWebLatitude));
+  return all;
+}
+
+void summarize(const fs::path& output, const WebMapResult& result, const exporters::WebShapes& shapes,
+               const std::string& terrain, const Callbacks& callbacks) {
+  callbacks.summary(fmt::format("{}: {} landmarks in {} tiles to zoom {}, {}\n", output.string(),
+                                result.landmarks, result.landmark_tiles, result.max_zoom,
+                                size_text(output / exporters::kLandmarkTiles)));
+  for (const exporters::WebShapeLayer& layer : shapes.layers)
+    callbacks.summary(fmt::format("{} areas of layer {}\n", layer.count, layer.name));
+  if (result.terrain_tiles > 0)
+    callbacks.summary(fmt::format("{}, {} tiles, {}\n", terrain, result.terrain_tiles,
+                                  size_text(output / exporters::kTerrainTiles)));
+  if (!result.has_library)
+    callbacks.summary(
+        fmt::format("Fetch the map library once: (cd {} && sh fetch-maplibre lib)\n", output.string()));
+}
+
 }  // namespace
 
 WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbacks) {
@@ -222,15 +153,7 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   const auto extent = exporters::map_extent(request.map);
   const WebPlane plane = exporters::web_plane(crs, extent);
   const WebProjection projection(crs, plane);
-  const auto all = exporters::read_web_landmarks(map, projection, request.types, request.min_confidence);
-  if (all.landmarks.empty())
-    throw Error(ErrorCode::input,
-                all.outside > 0 ? "all landmarks lie beyond the edges of web maps"
-                                : "the map has no landmarks to show",
-                request.map, "check the map with: waymark query " + request.map);
-  if (all.outside > 0)
-    callbacks.warning(fmt::format("{} landmarks lie beyond {:.2f} degrees of latitude and are not on the map",
-                                  all.outside, exporters::kMaxWebLatitude));
+  const auto all = read_landmarks(request, map, projection, callbacks);
 
   exporters::WebStyle style{
       .title = request.title.empty() ? exporters::title_of(map.path().stem().string()) : request.title,
@@ -263,18 +186,17 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   const fs::path output = request.output;
   fs::create_directories(output);
   AtomicFileSet files(output, output);
-  TileMaker make{tbb::task_arena(request.threads > 0 ? request.threads : tbb::task_arena::automatic),
-                 callbacks};
+  const TileWriting writing{request.threads, callbacks};
   PmtilesFile landmarks(files.path() / exporters::kLandmarkTiles, output / exporters::kLandmarkTiles);
-  result.landmark_tiles = write_landmarks(make, landmarks, all, style, result.max_zoom);
+  result.landmark_tiles = write_landmark_tiles(writing, landmarks, all, style, result.max_zoom);
   if (relief) {
     PmtilesFile tiles(files.path() / exporters::kTerrainTiles, output / exporters::kTerrainTiles);
-    result.terrain_tiles = write_terrain(make, tiles, *terrain, crs, plane);
+    result.terrain_tiles = write_terrain_tiles(writing, tiles, *terrain, crs, plane);
   }
   if (!shapes.shapes.empty()) {
     PmtilesFile tiles(files.path() / exporters::kShapeTiles, output / exporters::kShapeTiles);
     result.shape_tiles =
-        write_shapes(make, tiles, shapes, style.title, exporters::top_zoom(shapes, world_width));
+        write_shape_tiles(writing, tiles, shapes, style.title, exporters::top_zoom(shapes, world_width));
   }
   write_texts(files.path(), exporters::web_page_files(style.title), output);
   write_texts(files.path(), {{"style.json", exporters::web_style(all, style)}}, output);
@@ -286,18 +208,8 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
   if (!relief) fs::remove(output / exporters::kTerrainTiles);  // of an older map
   if (shapes.shapes.empty()) fs::remove(output / exporters::kShapeTiles);
 
-  callbacks.summary(fmt::format("{}: {} landmarks in {} tiles to zoom {}, {}\n", output.string(),
-                                result.landmarks, result.landmark_tiles, result.max_zoom,
-                                size_text(output / exporters::kLandmarkTiles)));
-  for (const exporters::WebShapeLayer& layer : shapes.layers)
-    callbacks.summary(fmt::format("{} areas of layer {}\n", layer.count, layer.name));
-  if (relief)
-    callbacks.summary(fmt::format("{}, {} tiles, {}\n", style.terrain_caption, result.terrain_tiles,
-                                  size_text(output / exporters::kTerrainTiles)));
   result.has_library = fs::exists(output / "lib");
-  if (!result.has_library)
-    callbacks.summary(
-        fmt::format("Fetch the map library once: (cd {} && sh fetch-maplibre lib)\n", output.string()));
+  summarize(output, result, shapes, style.terrain_caption, callbacks);
   return result;
 }
 
