@@ -36,7 +36,7 @@ class MapDrive final : public Command {
              Argument{"--scans", "NAME,...", &request_.scans,
                       fmt::format("Detectors for laser scans: {}",
                                   fmt::join(localization::laser_detectors().names(), ", "))}
-                 .or_else("walls"),
+                 .or_else("walls,wall_lines"),
              Argument{"--max-range", "M", &request_.max_range, "Do not use sightings farther away, metres"}
                  .or_else("20"),
              Argument{"--crs", "CRS", &request_.crs, "CRS of the poses, projected or local"}.or_else(

@@ -238,7 +238,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
     const double certainty = identification.required_certainty(seen.sightings[places[k]]);
     if (best->first < 0) {
       match.verdict = best->second > certainty ? Verdict::too_far : Verdict::ambiguous;
-    } else if (best->second < certainty) {
+    } else if (certainty_of(seen.sightings[places[k]], best->second, match.unmapped) < certainty) {
       match.verdict = Verdict::ambiguous;
     } else {
       match.pairing.landmark = static_cast<std::uint32_t>(best->first);

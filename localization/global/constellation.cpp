@@ -66,6 +66,8 @@ PoseEstimate ConstellationFix::pose() const {
 ConstellationIndex::ConstellationIndex(std::vector<MapLandmark> landmarks, FeatureScales scales,
                                        ConstellationOptions options)
     : landmarks_(std::move(landmarks)), scales_(std::move(scales)), options_(options) {
+  std::erase_if(landmarks_,
+                [](const MapLandmark& l) { return l.is_line(); });  // a constellation is of points
   const double existence = min_existence(landmarks_, options_.identification);
   std::erase_if(landmarks_, [&](const MapLandmark& l) {
     return !l.at.allFinite() || existence_prior(l, options_.identification) < existence;

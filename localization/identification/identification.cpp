@@ -191,7 +191,8 @@ std::vector<Match> assign_by_probability(const SightingSet& seen, const std::vec
       match.unmapped = none;
       if (none > 0.5)
         match.verdict = Verdict::too_far;
-      else if (match.probability < options.required_certainty(seen.sightings[i]))
+      else if (certainty_of(seen.sightings[i], match.probability, none) <
+               options.required_certainty(seen.sightings[i]))
         match.verdict = Verdict::ambiguous;
     }
     matches.push_back(match);

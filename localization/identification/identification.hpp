@@ -127,6 +127,12 @@ struct Match {
   double unmapped = 1;
 };
 
+/// Returns the probability that decides whether a pairing is certain: its own, but of a line that of any
+/// pairing, since pieces of one wall measure the same.
+inline double certainty_of(const SeenLandmark& seen, double pairing, double unmapped) {
+  return seen.extent ? 1 - unmapped : pairing;
+}
+
 /// Sets the key, the position and its covariance of the landmark that was matched.
 inline void name_landmark(Match& match, const MapLandmark& landmark) {
   match.key = landmark.key, match.at = landmark.at, match.covariance = landmark.covariance;

@@ -75,7 +75,7 @@ class BeaconsSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -151,7 +151,7 @@ class EkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -235,7 +235,7 @@ class GlobalSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -319,7 +319,7 @@ class GraphSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -419,7 +419,7 @@ class OdometrySettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -491,7 +491,7 @@ class PfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -575,7 +575,7 @@ class SlamSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -671,7 +671,7 @@ class UkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres

@@ -38,7 +38,9 @@ TEST(RealHall, IntelLabByItsOwnCornersAndEnds) {
     const auto score = nlohmann::json::parse(said.out);
     std::cout << method << ": median " << score["ate_median"] << " m, RMS " << score["ate_rmse"] << " m\n";
     EXPECT_LT(score["ate_median"], 0.08) << method;
-    EXPECT_LT(score["ate_rmse"], 0.25) << method;
+    EXPECT_LT(score["ate_rmse"], 0.2) << method;
+    EXPECT_LT(score["heading_rmse_deg"], 2.2) << method;
+    EXPECT_LT(score["lost"], 0.12) << method;
   }
 }
 

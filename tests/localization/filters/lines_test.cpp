@@ -116,6 +116,25 @@ TEST(Lines, OfTwoWallsFixThePose) {
   EXPECT_LT((filter.estimate().pose.at() - truth.at()).norm(), 0.03);
 }
 
+// Two pieces of one wall in the map: which of them is seen does not matter, so the sighting counts.
+TEST(Lines, OfOneWallInPiecesAreCertain) {
+  const FeatureScales scales(line_types());
+  const std::vector<MapLandmark> pieces{line_at(1, -3, 8, std::numbers::pi, 10),
+                                        line_at(2, 4, 8, std::numbers::pi, 10)};
+  const Pose2 truth{1, 2, 0.3};
+  const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid(pieces)}, scales);
+  const SightingSet seen{{}, {line_sighting_at(pieces[0], truth, 0, 6)}};
+  MultiHypothesisFilter mixture(near_pose({1.1, 1.9, 0.32}), matcher);
+  ExtendedKalman single(near_pose({1.1, 1.9, 0.32}), matcher);
+  EXPECT_LT(matcher.identify(seen, mixture.estimate(), LandmarkGrid(pieces)).matches.at(0).probability, 0.9);
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(mixture.update(seen).at(0).verdict, Verdict::matched) << i;
+    EXPECT_EQ(single.update(seen).at(0).verdict, Verdict::matched) << i;
+  }
+  EXPECT_NEAR(mixture.estimate().pose.y, 2, 0.03);
+  EXPECT_NEAR(single.estimate().pose.y, 2, 0.03);
+}
+
 // Facades of one line: the piece that is seen decides which it is.
 TEST(Lines, AreMatchedWithinTheirExtent) {
   const FeatureScales scales(line_types());

@@ -160,6 +160,27 @@ TEST(Constellation, FindsRocksAnywhereInAMap) {
 }
 
 // Three for each true one, near it: in the index they would take the places of true neighbours.
+// Walls of a map are lines and no part of a constellation: the search is the same with and without them.
+TEST(Constellation, LinesOfTheMapAreLeftOut) {
+  const Stars stars = strewn_rocks(300, 120, 4);
+  std::vector<MapLandmark> with_walls = stars.map;
+  Random random(9, "walls");
+  for (int k = 0; k < 200; ++k) {
+    MapLandmark wall = stars.map[static_cast<std::size_t>(k)];
+    wall.at = {random.uniform(-60, 60), random.uniform(-60, 60)};
+    wall.normal = {0, 1};
+    wall.half_length = 10;
+    wall.covariance = Eigen::Vector2d(33, 0.01).asDiagonal();
+    with_walls.push_back(wall);
+  }
+  const ConstellationIndex plain(stars.map, {}), mixed(with_walls, {});
+  EXPECT_EQ(mixed.size(), plain.size());
+  const Tally a = tally(stars, plain, {.reach = 15}, 30, 1), b = tally(stars, mixed, {.reach = 15}, 30, 1);
+  EXPECT_EQ(a.right, b.right);
+  EXPECT_EQ(a.wrong, b.wrong);
+  EXPECT_GT(a.right, 20);
+}
+
 TEST(Constellation, DoubtfulLandmarksAreNoWorseThanNone) {
   const Stars stars = strewn_rocks(600, 200, 3);
   std::vector<MapLandmark> with_false = stars.map;

@@ -274,7 +274,7 @@ TEST(Detectors, WithUnknownNamesAreRefusedWithTheKnownOnes) {
     FAIL();
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), HasSubstr("there is no detector 'wals'"));
-    EXPECT_THAT(e.what(), HasSubstr("doors, pillars, poles, reflectors, rocks, stems, walls"));
+    EXPECT_THAT(e.what(), HasSubstr("doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls"));
   }
   EXPECT_THROW(make_laser_detector({}, {.find = ""}), Error);
 }
