@@ -3,6 +3,7 @@
 #include "python/bindings/callbacks.hpp"
 #include "python/bindings/keywords.hpp"
 #include "workflows/detection/image_detector.hpp"
+#include "workflows/plug_in.hpp"
 #include "workflows/registries.hpp"
 
 namespace waymark::python {
@@ -67,6 +68,7 @@ py::tuple detect(const py::dict& keywords, py::object progress, py::object messa
 
 void bind_detection(py::module_& module) {
   module.def("detect", &detect, py::arg("keywords"), py::arg("progress"), py::arg("message"));
+  module.def("load_plug_in", &workflows::load_plug_in, py::arg("file"));
   module.def("image_detectors", &image_detectors);
   module.def("detect_keywords", [] { return detect_keywords().defaults(); });
 }

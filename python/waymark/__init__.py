@@ -11,7 +11,7 @@ from . import stages
 from ._waymark import version as _version
 from .detection import (
     detect, find_buildings, find_craters, find_craters_in_dem, find_mountain_tops, find_rocks, find_trees,
-    image_detectors, map_images)
+    image_detectors, load_plug_in, map_images)
 from .errors import EnvironmentError, Error, InputError, OutputError, UnitsFailed, UsageError, Warning
 from .evaluation import evaluate, evaluate_track
 from .forest import inventory
@@ -27,6 +27,6 @@ __all__ = [
     "EnvironmentError", "Error", "Feature", "InputError", "LandmarkType", "Localization", "Map", "OutputError", "Run",
     "UnitsFailed", "UsageError", "Warning", "detect", "evaluate", "evaluate_track", "find_buildings", "find_craters",
     "find_craters_in_dem", "find_mountain_tops", "find_rocks", "find_trees", "hazards", "image_detectors", "inventory",
-    "localize", "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map",
+    "load_plug_in", "localize", "localize_methods", "localize_settings", "map_images", "merge", "open", "read_map",
     "reconstruct", "route", "run", "simulate", "stages", "web",
 ]

@@ -1021,6 +1021,12 @@ def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any =
         report: .html to write; empty: none"""
     ...
 
+def load_plug_in(file: Any) -> None:
+    """Loads a shared library with landmark types, stages and detectors, as `waymark --plugin FILE.so` does.
+
+    Load it before anything else: no other thread may use the package meanwhile. It stays loaded."""
+    ...
+
 def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ..., start: Any = ..., progress: Any = ..., output: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., seed: int = ..., log_format: _Path = ..., columns: _Path = ..., topic: Sequence[Any] | _Path = ..., robot: int = ..., use_identities: bool = ..., write_map: _Path = ..., update_map: bool = ..., dem: Sequence[Any] | _Path = ..., in_map_crs: bool = ..., layers: _Path = ..., timing: bool = ..., live: float = ..., threads: int = ...) -> Localization:
     """Follows a robot through a map by its log, as `waymark localize`; returns a Localization.
 

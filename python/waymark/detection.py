@@ -25,6 +25,14 @@ def _table(text):
     return table
 
 
+def load_plug_in(file):
+    """Loads a shared library with landmark types, stages and detectors, as `waymark --plugin FILE.so` does.
+
+    Load it before anything else: no other thread may use the package meanwhile. It stays loaded.
+    """
+    _waymark.load_plug_in(os.fspath(file))
+
+
 def image_detectors():
     """Returns the detectors of `detect` by name: {"rocks": {"summary": ..., "type": ..., "methods": ...}, ...}.
 
