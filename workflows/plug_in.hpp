@@ -19,10 +19,11 @@ struct PlugIn {
 /// program if both have the same.
 const char* plug_in_build();
 
-/// Loads a plug-in, so that commands know its types, stages and detectors as their own. A plug-in that is
-/// loaded stays loaded; a second call has no effect. Call it before other threads use the library.
-/// Throws Error{input}, and adds nothing, for a file that is no plug-in or was built for another program. So
-/// it does for a name that is taken, and for a detector of a type that is not declared.
+/// Loads a plug-in, so that commands know its types, stages and detectors as their own. It stays loaded, and
+/// a second call has no effect. Call it before other threads use the library. Throws Error{input}, and adds
+/// nothing, for
+/// - a file that is no plug-in, or was built for another program;
+/// - a name that is taken, and a detector of a type that is not declared.
 void load_plug_in(const std::string& file);
 
 }  // namespace waymark::workflows
