@@ -854,7 +854,7 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: of the detector; empty: its first one, or chosen by the image
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
@@ -916,7 +916,7 @@ def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: of the detector; empty: its first one, or chosen by the image
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
@@ -949,7 +949,7 @@ def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: 
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: of the detector; empty: its first one, or chosen by the image
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon

@@ -17,7 +17,7 @@ def takes(table, but=(), more=False):
         names = {parameter.name for parameter in own} | set(but)
         lines, offered = [], []
         for name, default in getattr(_waymark, f"{table}_keywords")().items():
-            text = _keywords.DESCRIPTIONS.get(table, {}).get(name) or _setting(table, name)
+            text = _keywords.DESCRIPTIONS.get(table, {}).get(name, "") + _of_detectors(table, name)
             if name not in names:
                 offered.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default,
                                                  annotation=_annotation(default)))
@@ -30,12 +30,14 @@ def takes(table, but=(), more=False):
     return describe
 
 
-def _setting(table, name):
-    """Returns the description of a setting that detectors in images declare."""
+def _of_detectors(table, name):
+    """Returns what detectors in images declare of a keyword: their methods, and settings of their own."""
     if table != "detect":
         return ""
-    return "; ".join(f"{kind}: {about['settings'][name]}" for kind, about in _waymark.image_detectors().items()
-                     if name in about["settings"])
+    detectors = _waymark.image_detectors().items()
+    if name == "method":
+        return " (" + "; ".join(f"{kind}: {', '.join(about['methods'])}" for kind, about in detectors) + ")"
+    return "; ".join(f"{kind}: {about['settings'][name]}" for kind, about in detectors if name in about["settings"])
 
 
 def _annotation(default):
