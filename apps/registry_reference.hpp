@@ -8,6 +8,7 @@
 #include "landmarks/sensor_profile.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "pipeline/engine/registry.hpp"
+#include "workflows/detection/image_detector.hpp"
 namespace waymark::apps {
 
 /// A stage, landmark type, sensor profile, detector or vehicle in the four forms of `--format`.
@@ -20,6 +21,8 @@ std::vector<ReferenceEntry> registry_reference(const pipeline::Registry& stages)
 std::vector<ReferenceEntry> registry_reference(const TypeRegistry& types);
 std::vector<ReferenceEntry> registry_reference(const SensorRegistry& sensors, const TypeRegistry& types);
 std::vector<ReferenceEntry> registry_reference(const localization::DetectorTable& detectors);
+/// Returns the detectors in images, each named image_ and its name: scans have detectors of the same names.
+std::vector<ReferenceEntry> registry_reference(const workflows::ImageDetectorTable& detectors);
 /// Returns the built-in vehicles.
 std::vector<ReferenceEntry> vehicle_reference();
 

@@ -46,9 +46,24 @@ std::vector<Argument> global_arguments(Session& session) {
           .one_of({"auto", "bar", "dots", "json", "none"})
           .or_else("auto"),
       {"--config", "KEY=VALUE", &session.gdal_config, "Set a configuration option of GDAL; may be repeated"},
+      Argument{"--plugin", "FILE.so", &session.plug_ins,
+               "Load landmark types, stages and detectors of a plug-in; may be repeated"}
+          .offering(Offer::file),
       {"--allow-network", "", &session.allow_network,
        "Permit files to name files on the network; an address on the command line permits it, too"},
   };
+}
+
+std::vector<std::string> named_plug_ins(const std::vector<std::string>& words) {
+  constexpr std::string_view kOption = "--plugin";
+  std::vector<std::string> files;
+  for (std::size_t i = 1; i < words.size(); ++i) {
+    if (words[i] == kOption && i + 1 < words.size())
+      files.push_back(words[++i]);
+    else if (words[i].starts_with(std::string(kOption) + "="))
+      files.push_back(words[i].substr(kOption.size() + 1));
+  }
+  return files;
 }
 
 void begin(const Session& session) {

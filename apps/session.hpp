@@ -11,6 +11,7 @@ struct Session {
   std::int64_t threads = 0;  ///< 0: one per processor
   std::string progress = "auto";
   std::vector<std::string> gdal_config;  ///< KEY=VALUE
+  std::vector<std::string> plug_ins;     ///< shared libraries
   bool allow_network = false;
   bool names_network = false;  ///< a word of the command line does
   bool quiet = false, verbose = false;
@@ -19,6 +20,9 @@ struct Session {
 
 /// Returns the global options, allowed before and after the command.
 std::vector<Argument> global_arguments(Session& session);
+
+/// Returns the plug-ins that a command line names: commands are declared with what they add.
+std::vector<std::string> named_plug_ins(const std::vector<std::string>& words);
 
 /// Sets the level of the log and GDAL's options. Throws Error{usage} for a bad --threads or --config.
 void begin(const Session& session);

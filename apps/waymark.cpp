@@ -14,6 +14,7 @@
 #include "apps/version.hpp"
 #include "core/error.hpp"
 #include "workflows/file_access.hpp"
+#include "workflows/plug_in.hpp"
 #include "workflows/provenance.hpp"
 
 namespace waymark::apps {
@@ -45,6 +46,7 @@ int run_program(const std::vector<std::string>& words) {
   Session session;
   session.command_line = quoted(words);
   session.names_network = workflows::names_network(words);
+  for (const std::string& file : named_plug_ins(words)) workflows::load_plug_in(file);
   CommandTable commands;
   register_commands(commands);
   const std::vector<Argument> globals = global_arguments(session);

@@ -25,7 +25,7 @@ set(alone
   testbed/landing/crater_field.cpp testbed/landing/crater_profile.cpp
   testbed/landing/make_rock.cpp testbed/landing/rock_field.cpp testbed/score_match.cpp
   tests/apps/commands/area_of_interest_test.cpp tests/exporters/vector/track_file_test.cpp tests/workflows/planning/sight_terrain_test.cpp
-  workflows/build_details.cpp)
+  workflows/build_details.cpp workflows/plug_in_build.cpp)
 
 function(waymark_unity TARGET)
   set(sources_per_unit 24)

@@ -11,9 +11,9 @@ namespace waymark::workflows {
 /// Registers the built-in stages in a registry that may hold others, too.
 void register_built_in_stages(pipeline::Registry& registry);
 
-/// Returns the built-in stages.
+/// Returns the stages: the built-in ones, and those of plug-ins that load_plug_in() has loaded.
 const pipeline::Registry& all_stages();
-/// Returns the built-in landmark types.
+/// Returns the landmark types likewise.
 const TypeRegistry& all_types();
 /// Returns the built-in sensor profiles.
 const SensorRegistry& all_sensors();

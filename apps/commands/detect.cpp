@@ -1,25 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/detection/detect.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include "apps/command.hpp"
 #include "apps/console.hpp"
+#include "apps/detection_help.hpp"
 
 namespace waymark::apps {
 namespace {
 
-std::vector<Argument> detect_arguments(workflows::DetectRequest& request) {
-  return {
-      Argument{"", "craters|rocks|trees", &request.kind, "What to detect"}.needed().offering(
-          {"craters", "rocks", "trees"}),
+std::vector<Argument> detect_arguments(workflows::DetectRequest& request, const DetectionHelp& help) {
+  const std::vector<std::string> kinds = workflows::image_detectors().names();
+  std::vector<Argument> arguments = {
+      Argument{"", fmt::format("{}", fmt::join(kinds, "|")), &request.kind, "What to detect"}
+          .needed()
+          .offering(kinds),
       file_word("IMAGE", &request.image, "Image that GDAL opens, /vsi paths too"),
       Argument{"-o,--output", "OUT", &request.output,
                "Table to write: .csv, .geojson or .gpkg; an older one is replaced"}
           .needed()
           .offering(Offer::file),
-      Argument{"--method", "NAME", &request.method,
-               "Method: bowl or edges for craters, shadow or classic for "
-               "rocks; imagery (colour), peaks or lmf (heights above ground) for trees"}
-          .offering({"bowl", "edges", "shadow", "classic", "imagery", "peaks", "lmf"})
-          .or_else("bowl, shadow; of trees by the bands of the image"),
+      Argument{"--method", "NAME", &request.method, "Method: " + help.methods}
+          .offering(help.method_names)
+          .or_else(help.default_method),
       Argument{"--image-sun-angle", "DEG", &request.image_sun_angle,
                "Direction towards the sun in the image, from x (right) towards y (down)"}
           .or_else("estimated from the image"),
@@ -28,32 +33,33 @@ std::vector<Argument> detect_arguments(workflows::DetectRequest& request) {
       {"--sun-elevation", "DEG", &request.sun_elevation, "Sun above the horizon: gives rocks their heights"},
       {"--gsd", "M", &request.gsd, "Size of a pixel on the ground, of an image without georeference"},
       Argument{"--min-diameter", "PX", &request.min_diameter, "Smallest object detected"}.or_else(
-          "8 for craters, 1.5 for rocks"),
+          help.min_diameter),
       Argument{"--max-diameter", "PX", &request.max_diameter, "Largest object detected"}.or_else(
-          "0.6 of the shorter side for craters, 100 for rocks"),
+          help.max_diameter),
       Argument{"--min-confidence", "P", &request.min_confidence, "Drop less probable detections"}.or_else(
-          "0.5; nothing of trees found by heights"),
+          help.min_confidence),
       Argument{"--band", "N", &request.band, "Band of the image, from 1"}.or_else(
           "brightness of a colour image, else the first"),
       Argument{"--aoi", "POLYGONS", &request.aoi,
                "Area of interest, in any CRS of the body: detections outside are dropped"}
           .offering(Offer::file),
-      Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"},
-      Argument{
-          "--verifier", "FILE", &request.verifier,
-          "craters by bowl: verifier that `waymark train craters --labels` wrote, instead of the shipped one"}
-          .offering(Offer::file),
+      Argument{"--crs", "CRS", &request.crs, "CRS of a georeferenced image that names none, or a wrong one"}};
+  for (Argument& setting : setting_arguments(workflows::image_detectors(), request))
+    arguments.push_back(std::move(setting));
+  arguments.push_back(
       Argument{"--tile-pixels", "N", &request.piece, "Side of the pieces a large image is searched in"}
-          .or_else("8192")};
+          .or_else("8192"));
+  return arguments;
 }
 
 class Detect final : public Command {
  public:
   CommandSpec describe() override {
+    const DetectionHelp help = detection_help(workflows::image_detectors());
     return {
         .name = "detect",
         .group = Group::make,
-        .summary = "Find craters, rocks or trees in one image",
+        .summary = "Find " + help.kinds + " in one image",
         .about =
             "Works on any image GDAL reads, whatever its size, without a camera or a DEM. Results are "
             "pixels: (0, 0) is the centre of the first pixel, x to the right, y down. An orthophoto gives "
@@ -64,7 +70,7 @@ class Detect final : public Command {
             "properties; a GeoPackage is a map like any other.\n\n"
             "The direction of the light is estimated from the image unless it is given. Heights of rocks "
             "need --sun-elevation and the size of a pixel.",
-        .arguments = detect_arguments(request_),
+        .arguments = detect_arguments(request_, help),
         .examples = {
             {"waymark detect craters mosaic.png -o craters.csv", "Pixels; the sun is estimated"},
             {"waymark detect rocks ortho.tif -o rocks.gpkg --sun-azimuth 270 --sun-elevation 30",

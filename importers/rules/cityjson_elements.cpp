@@ -13,6 +13,7 @@ namespace waymark::importers {
 namespace {
 
 using Kind = GeometryPart::Kind;
+constexpr int kMaxDepth = 8;   // of parts of parts
 constexpr double kFlat = 0.1;  // m; vertices of a ground surface lie within this of the lowest
 
 struct Surface {
@@ -76,12 +77,50 @@ class CityJsonElements final : public ElementSource {
     element.tags["id"] = id;  // win over attributes of these names
     element.tags["type"] = element.layer;
     if (object.has("geometry")) add_geometry(object["geometry"], element.parts);
+    if (element.layer == "Building") add_building_parts(object, element);
     return true;
   }
 
   void restart() override { at_ = 0; }
 
  private:
+  /// Parts of a building with their own geometry, and what the building takes of them.
+  struct BuildingParts {
+    int count = 0;
+    std::vector<GeometryPart> ground;
+    double height = 0;  ///< largest measuredHeight, m; 0: none has one
+  };
+
+  void collect_parts(const JsonValue& object, int depth, BuildingParts& parts) const {
+    if (!object.has("children") || depth > kMaxDepth) return;
+    for (std::size_t i = 0; i < object["children"].size(); ++i) {
+      const std::string id = object["children"][i].text();
+      if (!root_["CityObjects"].has(id)) continue;
+      const JsonValue child = root_["CityObjects"][id];
+      if (child["type"].text() != "BuildingPart") continue;
+      std::vector<GeometryPart> ground;
+      if (child.has("geometry")) add_geometry(child["geometry"], ground);
+      parts.count += !ground.empty();
+      parts.ground.insert(parts.ground.end(), ground.begin(), ground.end());
+      if (child.has("attributes") && child["attributes"].has("measuredHeight") &&
+          child["attributes"]["measuredHeight"].is_number())
+        parts.height = std::max(parts.height, child["attributes"]["measuredHeight"].number());
+      collect_parts(child, depth + 1, parts);
+    }
+  }
+
+  /// A building with parts has the tag `parts`, their number, and takes from them what it lacks itself: its
+  /// ground and its height.
+  void add_building_parts(const JsonValue& object, MapElement& element) const {
+    BuildingParts parts;
+    collect_parts(object, 0, parts);
+    if (parts.count == 0) return;
+    element.tags["parts"] = std::to_string(parts.count);
+    if (element.parts.empty()) element.parts = std::move(parts.ground);
+    if (parts.height > 0 && !element.tags.contains("measuredHeight"))
+      element.tags["measuredHeight"] = fmt::format("{}", parts.height);
+  }
+
   Eigen::Vector3d vertex(const JsonValue& index) const {
     const std::int64_t i = index.integer();
     if (i < 0 || i >= std::int64_t(vertices_.size()))

@@ -46,6 +46,14 @@ std::map<std::string, std::string> read_expressions(const JsonValue& object) {
   return all;
 }
 
+/// Returns whether a part is the border of an area. A closed line has three vertices or more, and the first
+/// again.
+bool is_outline(const GeometryPart& part) {
+  const auto& v = part.vertices;
+  return part.kind == GeometryPart::Kind::outline ||
+         (part.kind == GeometryPart::Kind::line && v.size() > 3 && v.front() == v.back());
+}
+
 /// Returns the value of a key from 0 to `highest`.
 double positive(const JsonValue& rule, const std::string& key, const std::string& unit, double highest) {
   const double number = rule[key].number();
@@ -67,11 +75,13 @@ std::vector<TagCondition> read_where(const JsonValue& where) {
 }
 
 ImportRule read_rule(const JsonValue& rule, const ImportRule& common) {
-  rule.expect_only({"type", "layer", "where", "except", "geometry", "open", "min_turn_deg", "min_length",
-                    "max_length", "features", "attributes", "uid", "position_sd", "confidence"});
+  rule.expect_only({"type", "layer", "of", "where", "except", "geometry", "open", "min_turn_deg",
+                    "min_length", "max_length", "features", "attributes", "uid", "position_sd",
+                    "confidence"});
   ImportRule read = common;
   read.type = rule["type"].text();
   if (rule.has("layer")) read.layers = one_or_more(rule["layer"]);
+  if (rule.has("of")) read.of_outlines = choose<bool>(rule["of"], {{"all", false}, {"outlines", true}});
   if (rule.has("where")) read.where = read_where(rule["where"]);
   if (rule.has("except")) read.except = read_where(rule["except"]);
   if (rule.has("geometry"))
@@ -106,6 +116,7 @@ std::string known_names() {
 }  // namespace
 
 bool ImportRule::matches(const MapElement& element) const {
+  if (of_outlines && std::ranges::none_of(element.parts, is_outline)) return false;
   if (!layers.empty() && std::ranges::find(layers, element.layer) == layers.end()) return false;
   const auto holds = [&](const TagCondition& condition) {
     const auto tag = element.tags.find(condition.tag);
@@ -115,6 +126,20 @@ bool ImportRule::matches(const MapElement& element) const {
            });
   };
   return std::ranges::all_of(where, holds) && std::ranges::none_of(except, holds);
+}
+
+MapElement ImportRule::taken(const MapElement& element) const {
+  if (!of_outlines) return element;
+  MapElement outlines = element;
+  std::erase_if(outlines.parts, [](const GeometryPart& part) {
+    return part.kind != GeometryPart::Kind::hole && !is_outline(part);
+  });
+  for (GeometryPart& part : outlines.parts)
+    if (part.kind == GeometryPart::Kind::line) {
+      part.kind = GeometryPart::Kind::outline;
+      part.vertices.pop_back();
+    }
+  return outlines;
 }
 
 std::string ImportRule::title() const {

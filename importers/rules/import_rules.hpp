@@ -20,6 +20,7 @@ struct ImportRule {
   std::vector<std::string> layers;   ///< empty: all
   std::vector<TagCondition> where;   ///< all must hold
   std::vector<TagCondition> except;  ///< none may hold
+  bool of_outlines = false;          ///< only elements with outlines or closed lines, which are outlines then
   ShapeOptions shape;
   std::map<std::string, std::string> features;    ///< feature, z or <feature>_sd -> expression of tags
   std::map<std::string, std::string> attributes;  ///< attribute -> tag, or 'text'
@@ -28,6 +29,8 @@ struct ImportRule {
   std::string confidence;                         ///< expression; empty: 1
 
   bool matches(const MapElement& element) const;
+  /// Returns the element as the rule takes it: with `of_outlines`, closed lines as outlines and no others.
+  MapElement taken(const MapElement& element) const;
   /// Returns "pole (highway = street_lamp)".
   std::string title() const;
 };

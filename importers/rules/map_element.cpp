@@ -14,6 +14,13 @@ bool is_cityjson(const std::string& path) {
   return head.find("\"CityJSON\"") != std::string::npos;
 }
 
+/// Such maps have the tag at each node, so the first ones show it.
+bool has_local_nodes(const std::string& path) {
+  if (!path.ends_with(".osm")) return false;
+  const std::string head = read_vsi_head(path, 16 * kHead);
+  return head.find("\"local_x\"") != std::string::npos || head.find("'local_x'") != std::string::npos;
+}
+
 /// Reads a quoted word, in which a backslash keeps the next letter. Returns false if there is none.
 bool read_quoted(const std::string& text, std::size_t& at, std::string& word) {
   at = text.find('"', at);
@@ -35,8 +42,9 @@ void read_hstore(const std::string& text, std::map<std::string, std::string>& ta
     if (!value.empty()) tags[key] = value;
 }
 
-std::unique_ptr<ElementSource> open_elements(const std::string& path, const std::string& layer) {
+std::unique_ptr<ElementSource> open_elements(const std::string& path, const std::string& layer, bool local) {
   if (is_cityjson(path)) return open_cityjson_elements(path);
+  if (has_local_nodes(path) && (local || !has_geographic_nodes(path))) return open_local_osm_elements(path);
   return open_ogr_elements(path, layer);
 }
 

@@ -36,13 +36,21 @@ class ElementSource {
 /// Opens a CityJSON file, or any vector file that GDAL reads; `layer` limits it to one layer. Throws
 /// Error{input}.
 /// - Tags that GDAL's OSM driver collects in `other_tags` are tags like the others.
+/// - Lanelet2 maps with the tags local_x and local_y have local coordinates if `local` asks for them, or if
+/// no
+///   node has a latitude and longitude other than 0. Such files are held in memory.
 /// - Curves become lines. Of a CityJSON object with several geometries the lowest level of detail is its
 ///   outline.
-std::unique_ptr<ElementSource> open_elements(const std::string& path, const std::string& layer = {});
+std::unique_ptr<ElementSource> open_elements(const std::string& path, const std::string& layer = {},
+                                             bool local = false);
 
 // Open files of one kind.
 std::unique_ptr<ElementSource> open_ogr_elements(const std::string& path, const std::string& layer);
 std::unique_ptr<ElementSource> open_cityjson_elements(const std::string& path);
+std::unique_ptr<ElementSource> open_local_osm_elements(const std::string& path);
+
+/// Returns whether a node of an OSM file has a latitude and longitude other than 0. Throws Error{input}.
+bool has_geographic_nodes(const std::string& path);
 
 /// Parses tags as PostgreSQL's hstore writes them: `"natural"=>"tree","height"=>"12"`.
 void read_hstore(const std::string& text, std::map<std::string, std::string>& tags);

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "importers/json_value.hpp"
 #include "importers/rules/map_element.hpp"
 #include "importers/tables/vector_layer.hpp"
 
@@ -43,6 +44,18 @@ void add_parts(const OGRGeometry& geometry, std::vector<GeometryPart>& parts) {
     for (const OGRGeometry* part : *geometry.toGeometryCollection()) add_parts(*part, parts);
   } else if (OGR_GT_IsSubClassOf(type, wkbPolyhedralSurface)) {
     for (const OGRGeometry* part : *geometry.toPolyhedralSurface()) add_parts(*part, parts);
+  }
+}
+
+/// Adds the members of a JSON object of texts and numbers, as converters of OSM nest tags in GeoJSON.
+void read_tag_object(const std::string& json, const std::string& path,
+                     std::map<std::string, std::string>& tags) {
+  const JsonValue object = JsonValue::from_text(json, path);
+  for (const std::string& name : object.keys()) {
+    if (!object.has(name)) continue;
+    const JsonValue value = object[name];
+    if (value.is_text() && !value.text().empty()) tags[name] = value.text();
+    if (value.is_number()) tags[name] = fmt::format("{}", value.number());
   }
 }
 
@@ -117,7 +130,7 @@ class OgrElements final : public ElementSource {
     }
   }
 
-  static std::map<std::string, std::string> tags_of(OGRFeature& feature) {
+  std::map<std::string, std::string> tags_of(OGRFeature& feature) const {
     std::map<std::string, std::string> tags;
     for (int i = 0; i < feature.GetFieldCount(); ++i) {
       if (!feature.IsFieldSetAndNotNull(i)) continue;
@@ -125,8 +138,11 @@ class OgrElements final : public ElementSource {
       const std::string name = field.GetNameRef();
       std::string value = field.GetType() == OFTReal ? fmt::format("{}", feature.GetFieldAsDouble(i))
                                                      : feature.GetFieldAsString(i);
-      if (name == "other_tags" || name == "all_tags")
+      if (name == "other_tags" || name == "all_tags" ||
+          (name == "tags" && value.find("\"=>\"") != value.npos))
         read_hstore(value, tags);
+      else if (name == "tags" && value.starts_with('{'))
+        read_tag_object(value, path_, tags);
       else if (!value.empty())
         tags[name] = std::move(value);
     }

@@ -22,6 +22,15 @@ namespace {
 constexpr double kFrameReach = 1000;  // m from the origin of a frame; north differs by less than 0.02 deg
 constexpr std::size_t kTagsShown = 8;
 
+/// Returns whether a vertex has coordinates that are no numbers.
+bool is_broken(const MapElement& element) {
+  const auto broken = [](const Eigen::Vector3d& v) {
+    return !(std::abs(v.x()) < 1e9 && std::abs(v.y()) < 1e9);
+  };
+  return std::ranges::any_of(
+      element.parts, [&](const GeometryPart& part) { return std::ranges::any_of(part.vertices, broken); });
+}
+
 /// Converts positions of a file to metres near an element, and back.
 class NearbyFrame {
  public:
@@ -127,17 +136,33 @@ class RuleImport {
     return shape.shape == ShapeOf::corners || shape.shape == ShapeOf::ends;
   }
 
+  /// Returns the first rule for an element whose shapes need what other elements have.
+  const BoundRule* first_rule(bool (*needs)(const ShapeOptions&), const MapElement& element) const {
+    for (const BoundRule& bound : rules_)
+      if (needs(bound.rule->shape) && bound.rule->matches(element)) return &bound;
+    return nullptr;
+  }
+
+  /// Passes the element as its rule takes it, without a copy if that is the element itself.
+  static void pass_as_taken(const MapElement& element, const BoundRule& rule, const auto& take) {
+    if (rule.rule->of_outlines)
+      take(rule.rule->taken(element));
+    else
+      take(element);
+  }
+
   void collect_shared() {
-    const auto any = [&](bool (*needs)(const ShapeOptions&), const MapElement* element) {
-      return std::ranges::any_of(rules_, [&](const BoundRule& bound) {
-        return needs(bound.rule->shape) && (!element || bound.rule->matches(*element));
-      });
+    const auto any = [&](bool (*needs)(const ShapeOptions&)) {
+      return std::ranges::any_of(rules_, [&](const BoundRule& bound) { return needs(bound.rule->shape); });
     };
-    if (!any(compares_outlines, nullptr) && !any(joins_lines, nullptr)) return;
+    if (!any(compares_outlines) && !any(joins_lines)) return;
     MapElement element;
     while (next(element)) {
-      if (any(compares_outlines, &element)) shared_.add(element);
-      if (any(joins_lines, &element)) joints_.add(element);
+      if (is_broken(element)) continue;  // counted as rejected by add()
+      if (const BoundRule* rule = first_rule(compares_outlines, element))
+        pass_as_taken(element, *rule, [&](const MapElement& taken) { shared_.add(taken); });
+      if (const BoundRule* rule = first_rule(joins_lines, element))
+        pass_as_taken(element, *rule, [&](const MapElement& taken) { joints_.add(taken); });
     }
     source_.restart();
   }
@@ -163,18 +188,13 @@ class RuleImport {
       if (!done.contains(rule.type) && rule.rule->matches(element)) {
         done.insert(rule.type);
         ++rule.elements;
-        add(element, rule);
+        pass_as_taken(element, rule, [&](const MapElement& taken) { add(taken, rule); });
       }
   }
 
   void add(const MapElement& element, BoundRule& rule) {
     std::vector<GeometryPart> parts = element.parts;
-    const auto broken = [](const Eigen::Vector3d& v) {
-      return !(std::abs(v.x()) < 1e9 && std::abs(v.y()) < 1e9);
-    };
-    for (const GeometryPart& part : parts)
-      if (std::ranges::any_of(part.vertices, broken))
-        return reject(element, "coordinates that are no numbers", 1);
+    if (is_broken(element)) return reject(element, "coordinates that are no numbers", 1);
     if (!parts.empty()) frame_.move_to(parts[0].vertices[0]);
     for (GeometryPart& part : parts)
       for (Eigen::Vector3d& vertex : part.vertices) vertex = frame_.metres(vertex);
@@ -215,7 +235,7 @@ class RuleImport {
   void note_first(const MapElement& element, const std::string& reason) {
     if (!result_.first_rejection.empty()) return;
     const auto id = std::ranges::find_if(element.tags, [](const auto& tag) {
-      return tag.first == "osm_id" || tag.first == "osm_way_id" || tag.first == "id";
+      return tag.first == "osm_id" || tag.first == "osm_way_id" || tag.first == "id" || tag.first == "@id";
     });
     result_.first_rejection =
         fmt::format("{}, layer {}, feature {}{}: {}", header_.path, element.layer, element.number,

@@ -5,6 +5,7 @@
 #include <waymark/localization.hpp>
 #include <waymark/map.hpp>
 #include <waymark/mapping.hpp>
+#include <waymark/plug_in.hpp>
 #include <waymark/robot.hpp>
 #include <waymark/testbed.hpp>
 
@@ -15,6 +16,7 @@
 /// - \ref detection_header
 /// - \ref forest_header
 /// - \ref localization_header
+/// - \ref plug_in_header
 /// - \ref robot_header
 /// - \ref testbed_header
 ///

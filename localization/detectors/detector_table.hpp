@@ -35,7 +35,7 @@ struct DetectorSpec {
   std::function<PointDetector(const TypeRegistry& types)> make_points = {};
 };
 
-/// Registry of detectors, sorted by name.
+/// Registry of detectors in order of registration: the built-in ones by name, then those of plug-ins.
 class DetectorTable {
  public:
   /// Throws std::logic_error for a name that is empty or taken, and without types or a function that makes
@@ -43,6 +43,7 @@ class DetectorTable {
   void add(DetectorSpec detector);
   const DetectorSpec* find(std::string_view name) const;
   std::vector<std::string> names() const;
+  std::size_t size() const { return detectors_.size(); }
   auto begin() const { return detectors_.begin(); }
   auto end() const { return detectors_.end(); }
 

@@ -12,6 +12,23 @@
 namespace waymark::localization {
 namespace {
 
+struct DetectorTables {
+  DetectorTable laser, points, all;
+};
+
+/// Returns the detectors of the program, which only grow.
+DetectorTables& tables_of_detectors() {
+  static DetectorTables tables = [] {
+    DetectorTables made;
+    register_laser_detectors(made.laser);
+    register_point_detectors(made.points);
+    register_laser_detectors(made.all);
+    register_point_detectors(made.all);
+    return made;
+  }();
+  return tables;
+}
+
 /// Types of a map: those of its tables, and those of them that have landmarks.
 struct MapTypes {
   const TypeRegistry& listed;
@@ -96,31 +113,20 @@ void ScanDetectionOptions::describe(OptionVisitor& option) {
 }
 
 const DetectorTable& laser_detectors() {
-  static const DetectorTable table = [] {
-    DetectorTable made;
-    register_laser_detectors(made);
-    return made;
-  }();
-  return table;
+  return tables_of_detectors().laser;
 }
 
 const DetectorTable& point_detectors() {
-  static const DetectorTable table = [] {
-    DetectorTable made;
-    register_point_detectors(made);
-    return made;
-  }();
-  return table;
+  return tables_of_detectors().points;
 }
 
 const DetectorTable& scan_detectors() {
-  static const DetectorTable table = [] {
-    DetectorTable made;
-    register_laser_detectors(made);
-    register_point_detectors(made);
-    return made;
-  }();
-  return table;
+  return tables_of_detectors().all;
+}
+
+void add_scan_detector(const DetectorSpec& detector) {
+  tables_of_detectors().all.add(detector);
+  (detector.record == "laser" ? tables_of_detectors().laser : tables_of_detectors().points).add(detector);
 }
 
 PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held) {

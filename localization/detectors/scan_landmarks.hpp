@@ -24,6 +24,10 @@ const DetectorTable& point_detectors();
 /// Returns the detectors for both.
 const DetectorTable& scan_detectors();
 
+/// Adds a detector of a plug-in after the built-in ones. Nothing may use detectors in another thread
+/// meanwhile. Throws std::logic_error if the name is taken.
+void add_scan_detector(const DetectorSpec& detector);
+
 /// Returns the detectors for 3-D scans of the types that a map holds, as one. `types` are those of its
 /// tables, `held` those of its landmarks; empty: all of `types`.
 PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held = {});

@@ -48,6 +48,12 @@ void Registry::add(std::unique_ptr<Step> step) {
   if (!steps_.emplace(name, std::move(step)).second) throw std::logic_error("two stages named " + name);
 }
 
+void Registry::take(Registry&& other) {
+  for (const auto& [name, step] : other.steps_)
+    if (steps_.contains(name)) throw std::logic_error("two stages named " + name);
+  steps_.merge(other.steps_);
+}
+
 std::vector<std::string> Registry::names() const {
   std::vector<std::string> all;
   for (const auto& [name, step] : steps_) all.push_back(name);

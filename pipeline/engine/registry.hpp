@@ -17,6 +17,10 @@ class Registry {
     add(std::make_unique<TypedStep<Stage>>());
   }
 
+  /// Moves the stages of another registry here. Throws std::logic_error if one of their names is taken; then
+  /// nothing is moved.
+  void take(Registry&& other);
+
   /// Returns the names in alphabetical order.
   std::vector<std::string> names() const;
   /// Returns the stage with its default options. Throws Error{usage} with the nearest name if there is none.

@@ -3,6 +3,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -27,6 +28,22 @@ class Keywords {
          [member](Request& request, py::handle given) { set<Value>(std::invoke(member, request), given); },
          [member](Request& request) -> py::object { return object_of(std::invoke(member, request)); }});
     return *this;
+  }
+
+  /// Adds a keyword whose value of any type is kept as text: 3 as "3", true as "true".
+  Keywords& add_text(std::string name, std::function<std::string&(Request&)> member) {
+    all_.push_back({std::move(name),
+                    [member](Request& request, py::handle given) {
+                      member(request) = py::isinstance<py::bool_>(given)
+                                            ? (py::cast<bool>(given) ? "true" : "false")
+                                            : py::cast<std::string>(py::str(given));
+                    },
+                    [member](Request& request) -> py::object { return py::cast(member(request)); }});
+    return *this;
+  }
+
+  bool has(const std::string& name) const {
+    return std::ranges::any_of(all_, [&](const Keyword& keyword) { return keyword.name == name; });
   }
 
   /// Returns the request of keyword arguments. Throws TypeError for unknown names and wrong types.

@@ -845,8 +845,8 @@ class UnitsFailed(Error):
 class Warning(UserWarning):
     """A warning of a workflow."""
 
-def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
-    """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
+def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ..., verifier: _Path = ...) -> np.ndarray:
+    """Returns the objects of one kind, a name of `image_detectors()`, in an image as a structured array.
 
     image is a file or an array: (rows, columns) or (rows, columns, bands). The columns are those of
     docs/reference/detection_table.md: pixels, and metres where the pixel size is known. The options are those of
@@ -854,9 +854,8 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
-        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun
@@ -867,7 +866,8 @@ def detect(kind: Any, image: Any, *, progress: Any = ..., output: _Path = ..., m
         aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
-        threads: 0: one per processor"""
+        threads: 0: one per processor
+        verifier: craters: verifier that `waymark train craters --labels` wrote, instead of the shipped one"""
     ...
 
 def evaluate(result: Any, truth: Any, *, progress: Any = ..., ignore: _Path = ..., type: _Path = ..., sensor: _Path = ..., by: _Path = ..., tolerance: float = ..., min_tolerance: float = ..., min_diameter: float = ..., min_pixels: float = ..., size_edges: Sequence[Any] | _Path = ...) -> dict[str, Any]:
@@ -911,14 +911,13 @@ def find_buildings(las: Any = ..., *, dsm: Any = ..., dtm: Any = ..., chm: Any =
     `find_mountain_tops`. Options: min_area, max_extent, roughness, overhang, ..."""
     ...
 
-def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ..., verifier: _Path = ...) -> np.ndarray:
     """Returns the craters of an image: see `detect`.
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
-        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun
@@ -929,7 +928,8 @@ def find_craters(image: Any, *, progress: Any = ..., output: _Path = ..., method
         aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
-        threads: 0: one per processor"""
+        threads: 0: one per processor
+        verifier: craters: verifier that `waymark train craters --labels` wrote, instead of the shipped one"""
     ...
 
 def find_craters_in_dem(dem: Any, *, output: Any = ..., transform: Any = ..., crs: Any = ..., cell: Any = ..., progress: Any = ..., **options: Any) -> Any:
@@ -944,14 +944,13 @@ def find_mountain_tops(dem: Any, *, output: Any = ..., transform: Any = ..., crs
     else the landmarks as a structured array. Options: min_prominence, min_isolation, nodata, base, ..."""
     ...
 
-def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., verifier: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ...) -> np.ndarray:
+def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: _Path = ..., crs: _Path = ..., sun_azimuth: float = ..., sun_elevation: float = ..., image_sun_angle: float = ..., gsd: float = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., aoi: _Path = ..., band: int = ..., tile_pixels: int = ..., threads: int = ..., verifier: _Path = ...) -> np.ndarray:
     """Returns the rocks of an image: see `detect`. Heights need gsd and sun_elevation.
 
     Keywords:
         output: .csv, .geojson, .json or .gpkg; empty: no file is written
-        method: bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
+        method: of the detector; empty: its first one, or chosen by the image (craters: bowl, edges; rocks: shadow, classic; trees: imagery, peaks, lmf)
         crs: of a georeferenced image that names none or a wrong one
-        verifier: craters: file that `waymark train craters --labels` wrote; empty: the shipped one
         sun_azimuth: degrees clockwise from map north
         sun_elevation: degrees above the horizon
         image_sun_angle: degrees from x towards y, to the sun
@@ -962,7 +961,8 @@ def find_rocks(image: Any, *, progress: Any = ..., output: _Path = ..., method: 
         aoi: polygons: detections outside are dropped; georeferenced images only; empty: none
         band: from 1; 0: brightness of a colour image, else the first
         tile_pixels: side of the pieces of a large image, pixels
-        threads: 0: one per processor"""
+        threads: 0: one per processor
+        verifier: craters: verifier that `waymark train craters --labels` wrote, instead of the shipped one"""
     ...
 
 def find_trees(chm: Any = ..., *, dsm: Any = ..., dtm: Any = ..., las: Any = ..., flights: Any = ..., crowns: Any = ..., output: Any = ..., transform: Any = ..., crs: Any = ..., cell: Any = ..., progress: Any = ..., **options: Any) -> Any:
@@ -996,6 +996,12 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         threads"""
     ...
 
+def image_detectors() -> dict[str, dict[str, Any]]:
+    """Returns the detectors of `detect` by name: {"rocks": {"summary": ..., "type": ..., "methods": ...}, ...}.
+
+    methods has the record that each reads, "image" or "heights"; settings the description of each of its own."""
+    ...
+
 def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any = ..., stands_layer: _Path = ..., aoi: _Path = ..., grid: float = ..., allometry: _Path = ..., volume: _Path = ..., recall: _Path = ..., max_trees: int = ..., class_width: float = ..., report: _Path = ...) -> list[dict[str, Any]]:
     """Counts the trees of a map by stand, as `waymark inventory`; returns a list with a dict for each stand.
 
@@ -1013,6 +1019,12 @@ def inventory(map: Any, stands: Any = ..., *, output: Any = ..., progress: Any =
         max_trees: trees held in memory, 1 kB each; figures do not depend on it
         class_width: centimetres, of diameter classes
         report: .html to write; empty: none"""
+    ...
+
+def load_plug_in(file: Any) -> None:
+    """Loads a shared library with landmark types, stages and detectors, as `waymark --plugin FILE.so` does.
+
+    Load it before anything else: no other thread may use the package meanwhile. It stays loaded."""
     ...
 
 def localize(map: Any, log: Any, *, method: Any = ..., settings: _Settings = ..., start: Any = ..., progress: Any = ..., output: _Path = ..., sensor: _Path = ..., min_confidence: float = ..., seed: int = ..., log_format: _Path = ..., columns: _Path = ..., topic: Sequence[Any] | _Path = ..., robot: int = ..., use_identities: bool = ..., write_map: _Path = ..., update_map: bool = ..., dem: Sequence[Any] | _Path = ..., in_map_crs: bool = ..., layers: _Path = ..., timing: bool = ..., live: float = ..., threads: int = ...) -> Localization:

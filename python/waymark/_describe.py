@@ -9,14 +9,15 @@ from . import _keywords, _waymark
 def takes(table, but=(), more=False):
     """Replaces the last parameter, **options, by the keywords of a table, and lists them in the docstring.
 
-    Keywords in `but` are not offered; with `more` the function takes others, too. Names and defaults come from the C++ library when the package is imported; descriptions from _keywords.py.
+    Keywords in `but` are not offered; with `more` the function takes others, too. Names and defaults come from the C++ library when the package is imported; descriptions from _keywords.py, and
+    those of the settings of detectors from the library.
     """
     def describe(function):
         own = list(inspect.signature(function).parameters.values())
         names = {parameter.name for parameter in own} | set(but)
         lines, offered = [], []
         for name, default in getattr(_waymark, f"{table}_keywords")().items():
-            text = _keywords.DESCRIPTIONS.get(table, {}).get(name, "")
+            text = _keywords.DESCRIPTIONS.get(table, {}).get(name, "") + _of_detectors(table, name)
             if name not in names:
                 offered.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default,
                                                  annotation=_annotation(default)))
@@ -27,6 +28,16 @@ def takes(table, but=(), more=False):
         return function
 
     return describe
+
+
+def _of_detectors(table, name):
+    """Returns what detectors in images declare of a keyword: their methods, and settings of their own."""
+    if table != "detect":
+        return ""
+    detectors = _waymark.image_detectors().items()
+    if name == "method":
+        return " (" + "; ".join(f"{kind}: {', '.join(about['methods'])}" for kind, about in detectors) + ")"
+    return "; ".join(f"{kind}: {about['settings'][name]}" for kind, about in detectors if name in about["settings"])
 
 
 def _annotation(default):

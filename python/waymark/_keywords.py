@@ -2,12 +2,11 @@
 # Written by scripts/update-python from the declarations of the C++ library.
 """Descriptions of the keywords, by the function of the module that takes them."""
 
-DESCRIPTIONS = {'detect': {'kind': '"craters", "rocks" or "trees"',
+DESCRIPTIONS = {'detect': {'kind': 'name of a detector: "craters"; image_detectors() has all',
             'image': 'any path that GDAL opens',
             'output': '.csv, .geojson, .json or .gpkg; empty: no file is written',
-            'method': 'bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands',
+            'method': 'of the detector; empty: its first one, or chosen by the image',
             'crs': 'of a georeferenced image that names none or a wrong one',
-            'verifier': 'craters: file that `waymark train craters --labels` wrote; empty: the shipped one',
             'sun_azimuth': 'degrees clockwise from map north',
             'sun_elevation': 'degrees above the horizon',
             'image_sun_angle': 'degrees from x towards y, to the sun',

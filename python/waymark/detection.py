@@ -25,9 +25,25 @@ def _table(text):
     return table
 
 
+def load_plug_in(file):
+    """Loads a shared library with landmark types, stages and detectors, as `waymark --plugin FILE.so` does.
+
+    Load it before anything else: no other thread may use the package meanwhile. It stays loaded.
+    """
+    _waymark.load_plug_in(os.fspath(file))
+
+
+def image_detectors():
+    """Returns the detectors of `detect` by name: {"rocks": {"summary": ..., "type": ..., "methods": ...}, ...}.
+
+    methods has the record that each reads, "image" or "heights"; settings the description of each of its own.
+    """
+    return _waymark.image_detectors()
+
+
 @takes("detect")
 def detect(kind, image, *, progress=None, **options):
-    """Returns the objects of one kind ("rocks", "craters" or "trees") in an image as a structured array.
+    """Returns the objects of one kind, a name of `image_detectors()`, in an image as a structured array.
 
     image is a file or an array: (rows, columns) or (rows, columns, bands). The columns are those of
     docs/reference/detection_table.md: pixels, and metres where the pixel size is known. The options are those of

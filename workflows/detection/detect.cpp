@@ -16,7 +16,6 @@
 #include "importers/tables/area_of_interest.hpp"
 #include "importers/tables/table_landmarks.hpp"
 #include "workflows/detection/detection_plan.hpp"
-#include "workflows/detection/run_detection.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
@@ -29,6 +28,7 @@ namespace fs = std::filesystem;
 // Where detections are written, and what a map records about their origin.
 struct DetectionOutput {
   std::string path;
+  std::string kind;   // name of the detector
   std::string image;  // file that was searched
   std::string command_line;
   std::int64_t outside = 0;  // detections outside the area of interest
@@ -45,7 +45,7 @@ void write_text(const std::string& output, const std::string& text) {
 
 geodb::RunRecord run_record(const exporters::ImageDetections& found, const DetectionOutput& output) {
   pipeline::StageReport stage;
-  stage.stage = fmt::format("detect_{}s", all_types()[found.type].name);
+  stage.stage = "detect_" + output.kind;
   stage.units = stage.made = 1;
   stage.counts.out = static_cast<std::int64_t>(found.detections.size());
   stage.counts.in = stage.counts.out + output.outside;
@@ -126,19 +126,21 @@ void write_detections(const exporters::ImageDetections& found, const DetectionOu
 }  // namespace
 
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
-  const DetectionPlan plan = plan_detection(request);
+  PlannedDetection planned = plan_detection(request);
+  DetectionPlan& plan = planned.plan;
   if (!request.output.empty()) check_detection_output(request.output);
   const std::optional<importers::Area> area = area_of(request, plan.image->info());
   const auto started = std::chrono::system_clock::now();
   for (const std::string& warning : plan.warnings) callbacks.warning(warning);
-  DetectResult found = run_detection(plan, request.threads, callbacks.progress);
+  plan.search.progress = callbacks.progress;
+  DetectResult found = planned.detector.find(plan);
   if (area) found.outside = keep_inside(*area, found.detections);
   for (const std::string& warning : found.warnings) callbacks.warning(warning);
   found.warnings.insert(found.warnings.begin(), plan.warnings.begin(), plan.warnings.end());
   if (!found.light.empty()) callbacks.summary(found.light + "\n");
   if (request.output.empty()) return found;
-  const DetectionOutput output{request.output, plan.image->info().path, request.command_line, found.outside,
-                               started};
+  const DetectionOutput output{request.output,       planned.spec.name, plan.image->info().path,
+                               request.command_line, found.outside,     started};
   write_detections(found.detections, output, callbacks);
   callbacks.summary(fmt::format("{}: {} {}{}\n", request.output, found.detections.detections.size(),
                                 request.kind,

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 #include "exporters/vector/detections.hpp"
@@ -10,13 +11,13 @@ namespace waymark::workflows {
 
 /// One image and what to look for in it. Numbers that are not given are NaN.
 struct DetectRequest {
-  std::string kind;    ///< "craters", "rocks" or "trees"
+  std::string kind;    ///< name of a detector: "craters"; image_detectors() has all
   std::string image;   ///< any path that GDAL opens
   std::string output;  ///< .csv, .geojson, .json or .gpkg; empty: no file is written
-  std::string method;  ///< bowl, edges; shadow, classic; imagery, peaks, lmf; empty: chosen by kind and bands
+  std::string method;  ///< of the detector; empty: its first one, or chosen by the image
   std::string crs;     ///< of a georeferenced image that names none or a wrong one
-  std::string verifier =
-      {};  ///< craters: file that `waymark train craters --labels` wrote; empty: the shipped one
+  std::map<std::string, std::string> settings =
+      {};                ///< of the detector itself, as text by name; empty texts are defaults
   std::string aoi = {};  ///< polygons: detections outside are dropped; georeferenced images only; empty: none
   double sun_azimuth = std::numeric_limits<double>::quiet_NaN();    ///< degrees clockwise from map north
   double sun_elevation = std::numeric_limits<double>::quiet_NaN();  ///< degrees above the horizon
@@ -40,7 +41,7 @@ struct DetectResult {
   std::vector<std::string> warnings;
 };
 
-/// Finds craters, rocks or trees in one image and writes them to the output. An image without contrast or
+/// Finds the objects of one kind in one image and writes them to the output. An image without contrast or
 /// data has no detections and a warning that says why. Throws Error{usage} for options out of range or in
 /// conflict, Error{input} for a missing or damaged image, Error{output} before any work is done.
 DetectResult detect(const DetectRequest& request, const Callbacks& callbacks = {});

@@ -9,50 +9,81 @@
 
 #include "core/error.hpp"
 #include "core/options/option_reader.hpp"
-#include "core/text_file.hpp"
 #include "importers/images/image.hpp"
+#include "workflows/registries.hpp"
 
 namespace waymark::workflows {
 namespace {
 
-constexpr double kMinCrater = 6, kMinRock = 1, kMinTree = 0.1;  // pixels
 constexpr const char* kUnused = "its georeference is not used";
-
-struct SearchKind {
-  const char* word;
-  const char* type;
-  std::vector<std::string> methods;  // the first is the default
-  double min_diameter, max_diameter, smallest;
-};
-
-const std::vector<SearchKind>& kinds() {
-  static const std::vector<SearchKind> all = {{"craters", "crater", {"bowl", "edges"}, 8, 0, kMinCrater},
-                                              {"rocks", "rock", {"shadow", "classic"}, 1.5, 100, kMinRock},
-                                              {"trees", "tree", {"imagery", "peaks", "lmf"}, 1, 0, kMinTree}};
-  return all;
-}
 
 [[noreturn]] void throw_usage(const std::string& problem, const std::string& hint) {
   throw Error(ErrorCode::usage, problem, "", hint);
 }
 
-const SearchKind& find_kind(std::string word) {
-  if (word == "crater" || word == "rock" || word == "tree") word += 's';
-  for (const SearchKind& kind : kinds())
-    if (kind.word == word) return kind;
-  const std::string nearest = nearest_name(word, std::vector<std::string>{"craters", "rocks", "trees"});
-  throw_usage(fmt::format("'{}' cannot be detected", word),
-              nearest.empty()
-                  ? "write `waymark detect craters IMAGE`, `detect rocks IMAGE` or `detect trees IMAGE`"
-                  : "did you mean '" + nearest + "'?");
+/// Returns "write `waymark detect craters IMAGE`, `detect rocks IMAGE` or `detect trees IMAGE`".
+std::string all_commands() {
+  const std::vector<std::string> names = image_detectors().names();
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += fmt::format("{}`{}detect {} IMAGE`",
+                        i == 0                 ? "write "
+                        : i + 1 < names.size() ? ", "
+                                               : " or ",
+                        i == 0 ? "waymark " : "", names[i]);
+  return text;
 }
 
-void check_method(const SearchKind& kind, const std::string& method) {
-  if (std::ranges::count(kind.methods, method) > 0) return;
-  const std::string nearest = nearest_name(method, kind.methods);
-  throw_usage(
-      fmt::format("{} are found by {}, not by '{}'", kind.word, fmt::join(kind.methods, " or "), method),
-      nearest.empty() ? "leave out --method for the usual one" : "did you mean '" + nearest + "'?");
+/// Finds a detector by its name or by its type: "craters" or "crater".
+const ImageDetectorSpec& find_detector(const std::string& word) {
+  if (const ImageDetectorSpec* named = image_detectors().find(word)) return *named;
+  for (const ImageDetectorSpec& one : image_detectors())
+    if (one.type == word) return one;
+  const std::string nearest = nearest_name(word, image_detectors().names());
+  throw_usage(fmt::format("'{}' cannot be detected", word),
+              nearest.empty() ? all_commands() : "did you mean '" + nearest + "'?");
+}
+
+void check_method(const ImageDetectorSpec& spec, const std::string& method) {
+  std::vector<std::string> known;
+  for (const DetectionMethod& one : spec.methods) known.push_back(one.name);
+  if (std::ranges::count(known, method) > 0) return;
+  const std::string nearest = nearest_name(method, known);
+  throw_usage(fmt::format("{} are found by {}, not by '{}'", spec.name, fmt::join(known, " or "), method),
+              nearest.empty() ? "leave out --method for the usual one" : "did you mean '" + nearest + "'?");
+}
+
+/// Returns "--verifier is for craters that the method bowl finds", by all detectors that have the setting.
+std::string owners_of_setting(const std::string& setting) {
+  std::string text;
+  for (const ImageDetectorSpec& one : image_detectors())
+    for (const OptionRow& row : settings_of(one)) {
+      if (row.name != setting) continue;
+      const std::vector<std::string> methods = use_of_setting(one, setting).methods;
+      text += fmt::format("{}{}", text.empty() ? "" : ", ", one.name);
+      if (!methods.empty()) text += fmt::format(" that the method {} finds", fmt::join(methods, " or "));
+    }
+  if (text.empty()) throw_usage(fmt::format("no detector has a setting '{}'", setting), "leave it out");
+  std::string option = setting;
+  std::ranges::replace(option, '_', '-');
+  return fmt::format("--{} is for {}", option, text);
+}
+
+/// Sets the settings that are given. Throws Error{usage} for those of other detectors or methods.
+void set_own(const DetectRequest& request, const ImageDetectorSpec& spec, const std::string& method,
+             ImageDetector& detector) {
+  const std::vector<OptionRow> own = settings_of(spec);
+  for (const auto& [name, text] : request.settings) {
+    if (text.empty()) continue;
+    const std::vector<std::string> methods = use_of_setting(spec, name).methods;
+    if (std::ranges::find(own, name, &OptionRow::name) == own.end() ||
+        (!methods.empty() && std::ranges::count(methods, method) == 0))
+      throw_usage(owners_of_setting(name), "leave it out");
+    for (const std::string& warning :
+         set_option(detector.describe, name, text, {.owner = "detector " + spec.name, .where = name}))
+      throw_usage(warning, "use the present name");
+  }
+  if (detector.prepare) detector.prepare();
 }
 
 bool given(double value) {
@@ -65,7 +96,7 @@ void check_range(const char* option, double value, double lowest, double highest
                  {.help = "`waymark detect --help` says what it means", .min = lowest, .max = highest});
 }
 
-void check_numbers(const DetectRequest& request, const SearchKind& kind) {
+void check_numbers(const DetectRequest& request, const ImageDetectorSpec& spec) {
   if (given(request.sun_elevation) && !(request.sun_elevation > 0))
     throw_usage(fmt::format("the sun is not above the ground: --sun-elevation is {:g} degrees",
                             request.sun_elevation),
@@ -74,8 +105,8 @@ void check_numbers(const DetectRequest& request, const SearchKind& kind) {
   check_range("--sun-azimuth", request.sun_azimuth, -360, 720, "deg");
   check_range("--image-sun-angle", request.image_sun_angle, -360, 720, "deg");
   check_range("--min-confidence", request.min_confidence, 0, 1, "");
-  check_range("--min-diameter", request.min_diameter, kind.smallest, 1e6, "px");
-  check_range("--max-diameter", request.max_diameter, kind.smallest, 1e6, "px");
+  check_range("--min-diameter", request.min_diameter, spec.smallest, 1e6, "px");
+  check_range("--max-diameter", request.max_diameter, spec.smallest, 1e6, "px");
   check_range("--tile-pixels", static_cast<double>(request.piece), 256, 65536, "px");
   if (given(request.gsd) && !(request.gsd > 0 && request.gsd < 1e6))
     throw_usage(fmt::format("--gsd is {:g} m: a pixel measures more than nothing", request.gsd),
@@ -125,14 +156,6 @@ double map_azimuth(Degrees angle, const Georeference& place) {
   return azimuth < 0 ? azimuth + 360 : azimuth;
 }
 
-void set_verifier(DetectionPlan& plan, const std::string& file) {
-  if (file.empty()) return;
-  if (plan.type != "crater" || plan.method != "bowl")
-    throw_usage("--verifier is for craters that the method bowl finds", "leave it out");
-  plan.verifier = std::make_shared<const pipeline::ReliefVerifier>(
-      pipeline::parse_relief_verifier(read_text(file, "the verifier"), file));
-}
-
 void set_sun(DetectionPlan& plan, const DetectRequest& request) {
   const ImageInfo& info = plan.image->info();
   const auto unused =
@@ -174,29 +197,31 @@ void set_scale(DetectionPlan& plan, const DetectRequest& request) {
 
 }  // namespace
 
-DetectionPlan plan_detection(const DetectRequest& request) {
-  const SearchKind& kind = find_kind(request.kind);
-  check_numbers(request, kind);
-  DetectionPlan plan;
-  plan.type = kind.type;
-  plan.method = request.method.empty() ? kind.methods[0] : request.method;
-  check_method(kind, plan.method);
-  if (plan.type == "tree") plan.method = request.method;  // empty: chosen by the image's bands
-  if (given(request.min_confidence))
-    plan.min_confidence = plan.min_treetop_confidence = request.min_confidence;
-  plan.search.min_diameter = given(request.min_diameter) ? request.min_diameter : kind.min_diameter;
-  plan.search.max_diameter = given(request.max_diameter) ? request.max_diameter : kind.max_diameter;
+PlannedDetection plan_detection(const DetectRequest& request) {
+  const ImageDetectorSpec& spec = find_detector(request.kind);
+  check_numbers(request, spec);
+  PlannedDetection planned{spec, spec.make(), {}};
+  DetectionPlan& plan = planned.plan;
+  plan.types = &all_types();
+  plan.type = plan.types->id(spec.type);
+  const std::string method = request.method.empty() ? spec.methods[0].name : request.method;
+  check_method(spec, method);
+  plan.method = spec.method_by.empty() ? method : request.method;
+  if (given(request.min_confidence)) plan.min_confidence = request.min_confidence;
+  plan.search = spec.search;
+  if (given(request.min_diameter)) plan.search.min_diameter = request.min_diameter;
+  if (given(request.max_diameter)) plan.search.max_diameter = request.max_diameter;
   if (plan.search.max_diameter > 0 && plan.search.min_diameter >= plan.search.max_diameter)
     throw_usage(fmt::format("no {} are looked for: the smallest would be {:g} px, the largest {:g} px",
-                            kind.word, plan.search.min_diameter, plan.search.max_diameter),
+                            spec.name, plan.search.min_diameter, plan.search.max_diameter),
                 "give both --min-diameter and --max-diameter");
   plan.search.piece = request.piece;
-  plan.search.reduce_for_large = plan.type == "crater";
-  set_verifier(plan, request.verifier);
+  plan.search.threads = request.threads;
+  set_own(request, spec, method, planned.detector);
   plan.image = open_image(request, plan.warnings);
   set_sun(plan, request);
   set_scale(plan, request);
-  return plan;
+  return planned;
 }
 
 }  // namespace waymark::workflows

@@ -65,10 +65,12 @@ importers::ImportedTable read_elements(const ImportRequest& request, StagedLandm
   importers::ImportRules rules = importers::read_import_rules(request.rules);
   if (!request.unit.empty()) rules.unit = request.unit;
   const auto first = [](const std::string& a, const std::string& b) { return a.empty() ? b : a; };
-  const auto source = importers::open_elements(request.table, first(request.layer, rules.layer));
+  const std::string table_crs = first(request.options.table_crs, rules.crs),
+                    map_crs = first(request.options.map_crs, rules.map_crs);
+  const bool local = first(table_crs, map_crs) == "local";
+  const auto source = importers::open_elements(request.table, first(request.layer, rules.layer), local);
   return importers::import_by_rules(
-      *source, request.table, all_types(), rules, first(request.options.table_crs, rules.crs),
-      first(request.options.map_crs, rules.map_crs),
+      *source, request.table, all_types(), rules, table_crs, map_crs,
       [&](Landmark&& landmark) { landmarks.add(std::move(landmark)); }, request.options.aoi);
 }
 

@@ -11,8 +11,9 @@ void register_ready_rules_cityjson(ReadyRules& rules) {
   "rules": [
     {"type": "building", "geometry": "centroid", "where": {"type": "Building"},
      "features": {"height": "measuredHeight"}, "attributes": {"name": "id"}},
-    {"type": "wall_corner", "geometry": "corners", "where": {"type": ["Building", "BuildingPart"]}},
-    {"type": "wall", "geometry": "walls", "where": {"type": ["Building", "BuildingPart"]}, "min_length": 2,
+    {"type": "wall_corner", "geometry": "corners", "where": {"type": ["Building", "BuildingPart"]}, "except": {"parts": "*"}},
+    {"type": "wall", "geometry": "walls", "where": {"type": ["Building", "BuildingPart"]}, "except": {"parts": "*"},
+     "min_length": 2,
      "features": {"height": "measuredHeight"}},
     {"type": "tree", "geometry": "centroid", "where": {"type": "SolitaryVegetationObject"},
      "features": {"height": "height", "crown_diameter": "crownDiameter", "diameter": "trunkDiameter"}},

@@ -28,9 +28,9 @@ void register_ready_rules_osm(ReadyRules& rules) {
     {"type": "door", "where": {"entrance": "*"}, "except": {"entrance": "no"}, "features": {"width": "width"}, "confidence": 0.7},
     {"type": "building", "geometry": "outline", "where": {"building": "*"}, "except": {"building": "no"},
      "features": {"height": "height"}, "attributes": {"name": "name"}},
-    {"type": "wall_corner", "geometry": "corners", "layer": "multipolygons", "where": {"building": "*"},
+    {"type": "wall_corner", "geometry": "corners", "of": "outlines", "where": {"building": "*"},
      "except": {"building": ["no", "roof"]}, "position_sd": 1, "confidence": 0.8},
-    {"type": "wall", "geometry": "walls", "layer": "multipolygons", "where": {"building": "*"},
+    {"type": "wall", "geometry": "walls", "of": "outlines", "where": {"building": "*"},
      "except": {"building": ["no", "roof"]}, "position_sd": 1, "min_length": 2, "features": {"height": "height"}, "confidence": 0.8},
     {"type": "wall", "geometry": "walls", "where": {"barrier": ["wall", "retaining_wall", "city_wall"]},
      "min_length": 2, "features": {"height": "height"}}

@@ -95,6 +95,79 @@ TEST_F(ImportRules, ATownOfOpenStreetMap) {
   EXPECT_EQ(waymark({"validate", map_}).code, 0);
 }
 
+/// The houses, the lamp and the tree of kTown as programs save them: outlines as polygons or as closed lines,
+/// tags as members or as an object.
+std::string town_as_geojson(const std::string& outline, bool nested_tags) {
+  const auto feature = [&](const std::string& tags, const std::string& type, const std::string& at) {
+    return R"({"type": "Feature", "id": "way/1", "properties": {"@id": "way/1")" +
+           (nested_tags ? R"(, "tags": {)" + tags + "}" : ", " + tags) + R"(}, "geometry": {"type": ")" +
+           type + R"(", "coordinates": )" + at + "}}";
+  };
+  const auto house = [&](const std::string& kind, const std::string& west, const std::string& east) {
+    const std::string ring = "[[" + west + ", 49.0], [" + east + ", 49.0], [" + east + ", 49.00009], [" +
+                             west + ", 49.00009], [" + west + ", 49.0]]";
+    return feature(R"("building": ")" + kind + "\"", outline, outline == "Polygon" ? "[" + ring + "]" : ring);
+  };
+  return R"({"type": "FeatureCollection", "features": [)" + house("yes", "8.4", "8.4001367") + "," +
+         house("house", "8.4001367", "8.4002734") + "," +
+         feature(R"("highway": "street_lamp", "height": "6 m")", "Point", "[8.4, 49.001]") + "," +
+         feature(R"("building": "garage")", "LineString", "[[8.4, 49.001], [8.401, 49.002], [8.4, 49.003]]") +
+         "," + feature(R"("natural": "tree", "circumference": "1,57")", "Point", "[8.401, 49.002]") + "]}";
+}
+
+TEST_F(ImportRules, ATownOfOpenStreetMapSavedAsGeoJson) {
+  ASSERT_EQ(import(kTown, "town.osm", {"--rules", "osm"}).code, 0);
+  const char* const compared[] = {"building", "wall_corner", "wall", "pole", "tree"};
+  std::vector<json> wanted;
+  for (const char* type : compared) wanted.push_back(landmarks(type));
+  const auto expect_the_town = [&](const std::string& form) {
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+      const json found = landmarks(compared[i]);
+      ASSERT_EQ(found.size(), wanted[i].size()) << form << ": " << compared[i];
+      for (std::size_t k = 0; k < found.size(); ++k)
+        for (const char* value : {"x", "y", "direction", "opening_angle", "length", "diameter", "height"})
+          if (wanted[i][k].contains(value) && wanted[i][k][value].is_number()) {
+            EXPECT_NEAR(found[k][value], wanted[i][k][value], 1e-6)
+                << form << ": " << compared[i] << ' ' << value;
+          }
+    }
+  };
+  for (const char* outline : {"Polygon", "LineString"})
+    for (const bool nested : {false, true}) {
+      const Outcome said = import(town_as_geojson(outline, nested), "data.geojson", {"--rules", "osm"});
+      ASSERT_EQ(said.code, 0) << said.err;
+      EXPECT_THAT(said.err, HasSubstr("1 outline that is not closed"));
+      expect_the_town(std::string(outline) + (nested ? ", nested tags" : ""));
+    }
+  const std::string table = folder_ / "planet.gpkg";
+  ASSERT_EQ(bash("ogr2ogr -nln planet_osm_line " + table + " " + (folder_ / "data.geojson")).code, 0);
+  const Outcome said = waymark({"import", table, "-o", map_, "--rules", "osm"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  expect_the_town("a layer of another name");
+}
+
+// 505 buildings of a campus, from the extract and as a GeoPackage with layers of other names.
+TEST_F(ImportRules, ARealTownSavedWithOtherLayersIsTheSame) {
+  const auto data = std::filesystem::path(WAYMARK_SOURCE_DIR) /
+                    "../shared/data/environments/gis/osm_kaiserslautern_uni.osm.gz";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not on this machine";
+  const std::string osm = folder_ / "town.osm", other = folder_ / "other.gpkg";
+  ASSERT_EQ(bash("gzip -dc '" + data.string() + "' > " + osm).code, 0);
+  for (const std::string layer : {"points", "lines", "multipolygons"})
+    ASSERT_EQ(bash("ogr2ogr -update -append -nln my_" + layer + " " + other + " " + osm + " " + layer).code,
+              0);
+  std::vector<std::size_t> counts[2];
+  for (const bool converted : {false, true}) {
+    const Outcome said = waymark({"import", converted ? other : osm, "-o", map_, "--rules", "osm"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    for (const char* type : {"building", "wall_corner", "wall", "pole", "tree", "traffic_sign"})
+      counts[converted].push_back(landmarks(type).size());
+  }
+  EXPECT_EQ(counts[0], counts[1]);
+  EXPECT_GT(counts[0][0], 500U);
+  EXPECT_GT(counts[0][1], 2000U);
+}
+
 TEST_F(ImportRules, AnOutlineThatIsNotClosedIsNoBuilding) {
   const Outcome said = import(
       kTown, "town.osm", {"--rules", rules(R"({"type": "building", "geometry": "centroid", "layer": "lines",
@@ -237,6 +310,51 @@ TEST_F(ImportRules, WaysOfOneWallHaveNoEndsWhereTheyMeet) {
   }
 }
 
+/// A wall of 6 m to the east and 4 m to the north, and a pole, in local_x and local_y; one wall lacks a node.
+std::string lanes_with_local_tags(const std::string& lat_lon) {
+  std::string text = "<osm version='0.6'>\n";
+  const auto node = [&](int id, const std::string& x, const std::string& y, const std::string& more) {
+    text += "<node id='" + std::to_string(id) + "' " + lat_lon + "><tag k='local_x' v='" + x +
+            "'/><tag k='local_y' v='" + y + "'/><tag k='ele' v='19.5'/><tag k='mgrs_code' v='54SUE000000'/>" +
+            more + "</node>\n";
+  };
+  node(1, "100.25", "200", "");
+  node(2, "106.25", "200", "");
+  node(3, "106.25", "204", "");
+  node(4, "103", "210", "<tag k='type' v='pole'/>");
+  return text + R"(<way id='10'><nd ref='1'/><nd ref='2'/><nd ref='3'/><tag k='type' v='wall'/></way>
+ <way id='11'><nd ref='1'/><nd ref='99'/><tag k='type' v='wall'/></way></osm>)";
+}
+
+TEST_F(ImportRules, LaneletsWithLocalPositions) {
+  const auto expect_local = [&](const Outcome& said) {
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_THAT(said.err, HasSubstr("landmarks in local"));
+    EXPECT_THAT(said.err, HasSubstr("coordinates that are no numbers"));
+    EXPECT_THAT(said.err, HasSubstr("osm_id 11"));
+    ASSERT_EQ(landmarks("pole").size(), 1U);
+    EXPECT_EQ(landmarks("pole")[0]["x"], 103.0);
+    EXPECT_EQ(landmarks("pole")[0]["y"], 210.0);
+    EXPECT_EQ(landmarks("pole")[0]["z"], 19.5);
+    ASSERT_EQ(landmarks("wall").size(), 4U);  // two faces of two pieces
+    for (const json& wall : landmarks("wall"))
+      EXPECT_TRUE(std::abs(double(wall["length"]) - 6) < 1e-9 || std::abs(double(wall["length"]) - 4) < 1e-9);
+    for (const json& corner : landmarks("wall_corner")) EXPECT_NEAR(corner["x"], 106.25, 1e-9);
+    EXPECT_EQ(landmarks("wall_corner").size(), 2U);
+  };
+  for (const char* none : {"lat='' lon=''", "lat='0.0' lon='0.0'", ""})
+    expect_local(import(lanes_with_local_tags(none), "lanes.osm", {"--rules", "lanelet2"}));
+  const std::string both = lanes_with_local_tags("lat='49.1' lon='8.4'");
+  expect_local(import(both, "lanes.osm", {"--rules", "lanelet2", "--map-crs", "local"}));
+  expect_local(import(both, "lanes.osm", {"--rules", "lanelet2", "--crs", "local"}));
+  const Outcome degrees = import(both, "lanes.osm", {"--rules", "lanelet2"});
+  ASSERT_EQ(degrees.code, 0) << degrees.err;
+  EXPECT_NEAR(landmarks("pole")[0]["x"], 8.4, 1e-9);
+  const Outcome broken = import(both.substr(0, both.size() - 40), "lanes.osm", {"--rules", "lanelet2"});
+  EXPECT_EQ(broken.code, 1);
+  EXPECT_THAT(broken.err, HasSubstr("lanes.osm"));
+}
+
 TEST_F(ImportRules, WhatIsNoBuildingIsNone) {
   std::string town = kTown;
   town.replace(town.find("v='house'"), 9, "v='no'");
@@ -297,6 +415,40 @@ TEST_F(ImportRules, BuildingsOfACityModelStandOnTheirGround) {
   EXPECT_NEAR(buildings[0]["z"], 1, 0.01);
   EXPECT_EQ(buildings[0]["height"], 9.5);
   EXPECT_EQ(landmarks("wall_corner").size(), 4U);
+}
+
+// A front house of 10 m by 5 m with a wing of 5 m by 5 m behind its west half; the whole is an L.
+TEST_F(ImportRules, ABuildingStandsOnTheGroundOfItsParts) {
+  const std::string parts =
+      R"("wing": {"type": "BuildingPart", "parents": ["house"], "attributes": {"measuredHeight": 6},
+        "geometry": [{"type": "MultiSurface", "lod": "0", "boundaries": [[[3, 6, 5, 4]]]}]},
+      "front": {"type": "BuildingPart", "parents": ["house"], "attributes": {"measuredHeight": 9},
+        "geometry": [{"type": "MultiSurface", "lod": "0", "boundaries": [[[0, 1, 2, 6, 3]]]}]}},
+    "vertices": [[0, 0, 3], [10, 0, 3], [10, 5, 3], [0, 5, 3], [0, 10, 3], [5, 10, 3], [5, 5, 3]]})";
+  const auto city = [&](const std::string& house) {
+    return R"({"type": "CityJSON", "version": "2.0", "CityObjects": {
+      "house": {"type": "Building", "children": ["front", "wing", "gone"])" +
+           house + "}," + parts;
+  };
+  const auto expect_the_house = [&](const std::string& text, double x, double y, double height) {
+    const Outcome said = import(text, "city.json", {"--rules", "cityjson", "--map-crs", "local"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    const json buildings = landmarks("building");
+    ASSERT_EQ(buildings.size(), 1U) << said.err;
+    EXPECT_EQ(buildings[0]["name"], "house");
+    EXPECT_NEAR(buildings[0]["x"], x, 1e-6);
+    EXPECT_NEAR(buildings[0]["y"], y, 1e-6);
+    EXPECT_EQ(buildings[0]["height"], height);
+    EXPECT_EQ(landmarks("wall").size(), 7U);  // of the parts, without the one that they share
+    const json corners = landmarks("wall_corner");
+    ASSERT_EQ(corners.size(), 5U);  // those on the border of both parts are shared
+    for (const json& corner : corners) EXPECT_NEAR(corner["opening_angle"], 1.5 * std::numbers::pi, 0.01);
+  };
+  // 50 m2 about (5, 2.5) and 25 m2 about (2.5, 7.5)
+  expect_the_house(city(""), (50 * 5 + 25 * 2.5) / 75, (50 * 2.5 + 25 * 7.5) / 75, 9);
+  const std::string own = R"(, "attributes": {"measuredHeight": 8},
+        "geometry": [{"type": "MultiSurface", "lod": "0", "boundaries": [[[0, 1, 2, 3]]]}])";
+  expect_the_house(city(own), 5, 2.5, 8);
 }
 
 TEST_F(ImportRules, FaultsOfRulesAreNamed) {

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "workflows/detection/tree_detection.hpp"
-
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -15,7 +13,7 @@
 #include "pipeline/forest/tree_observations.hpp"
 #include "workflows/detection/crown_detection.hpp"
 #include "workflows/detection/image_canopy.hpp"
-#include "workflows/registries.hpp"
+#include "workflows/detection/image_detector.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -66,14 +64,13 @@ double pixel_metres(const DetectionPlan& plan, DetectResult& found) {
 }
 
 std::vector<pipeline::DetectedTree> search_tiles(const CanopySource& canopy,
-                                                 const pipeline::TreeSearch& search, std::int64_t side,
-                                                 int threads,
-                                                 const pipeline::ProgressMeter::Listener& progress) {
+                                                 const pipeline::TreeSearch& search, const ImageSearch& how) {
   const GridGeometry& grid = canopy.geometry();
-  const std::vector<pipeline::Tile> tiles = importers::tiles_of(grid.columns, grid.rows, side);
+  const std::vector<pipeline::Tile> tiles =
+      importers::tiles_of(grid.columns, grid.rows, std::min<std::int64_t>(how.piece, 2048));
   std::vector<std::vector<pipeline::DetectedTree>> parts(tiles.size());
-  pipeline::ProgressMeter meter(progress, "search_image", static_cast<std::int64_t>(tiles.size()));
-  tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
+  pipeline::ProgressMeter meter(how.progress, "search_image", static_cast<std::int64_t>(tiles.size()));
+  tbb::task_arena arena(how.threads > 0 ? how.threads : tbb::task_arena::automatic);
   arena.execute([&] {
     tbb::parallel_for(std::size_t{0}, tiles.size(), [&](std::size_t i) {
       parts[i] = pipeline::find_trees(canopy, tiles[i].cells, search);
@@ -108,20 +105,19 @@ struct TreeCandidate {
 
 /// Finds tops of a canopy: of heights, or of greenness and darkness in a colour image.
 std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double metres,
-                                            const std::string& method, TypeId type, int threads,
-                                            const pipeline::ProgressMeter::Listener& progress) {
+                                            const std::string& method) {
   const bool imagery = method == "imagery";
-  const LandmarkType& tree_type = all_types()[type];
+  const LandmarkType& tree_type = (*plan.types)[plan.type];
   const auto canopy =
       image_canopy(plan.image->info(), imagery ? CanopySign::greenness : CanopySign::height, metres);
   const pipeline::TreeSearch search = imagery ? imagery_search() : height_search(method);
   std::vector<TreeCandidate> kept;
-  for (const pipeline::DetectedTree& tree :
-       search_tiles(*canopy, search, std::min<std::int64_t>(plan.search.piece, 2048), threads, progress)) {
-    TreeCandidate one{detection_of(tree, type, metres, imagery), {}};
-    one.features = pipeline::observation_of(tree, *canopy, tree_type, type, pipeline::built_in_allometry(),
-                                            "mixed", pipeline::tree_errors("mixed", true))
-                       .features;
+  for (const pipeline::DetectedTree& tree : search_tiles(*canopy, search, plan.search)) {
+    TreeCandidate one{detection_of(tree, plan.type, metres, imagery), {}};
+    one.features =
+        pipeline::observation_of(tree, *canopy, tree_type, plan.type, pipeline::built_in_allometry(), "mixed",
+                                 pipeline::tree_errors("mixed", true))
+            .features;
     if (imagery)
       one.features[feature_index(tree_type, "height")] =
           one.features[feature_index(tree_type, "diameter")] = {};
@@ -131,16 +127,16 @@ std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double me
 }
 
 /// Finds crowns of a colour image with a trained network.
-std::vector<TreeCandidate> detect_by_network(const ImageInfo& info, double metres, TypeId type, int threads,
-                                             const pipeline::ProgressMeter::Listener& progress) {
-  const ColourImage image(info, metres);
-  const LandmarkType& tree_type = all_types()[type];
+std::vector<TreeCandidate> detect_by_network(const DetectionPlan& plan, double metres) {
+  const ColourImage image(plan.image->info(), metres);
+  const LandmarkType& tree_type = (*plan.types)[plan.type];
   const pipeline::DenseNetwork& network =
       image.infrared() ? pipeline::crown_network_infrared() : pipeline::crown_network_colour();
   std::vector<TreeCandidate> kept;
-  for (const DetectedCrown& crown : detect_crowns(image, network, threads, progress)) {
+  for (const DetectedCrown& crown :
+       detect_crowns(image, network, plan.search.threads, plan.search.progress)) {
     TreeCandidate one;
-    one.detection.type = type;
+    one.detection.type = plan.type;
     const double diameter = crown.diameter / metres;
     one.detection.outline = {crown.x, crown.y, diameter, diameter, 0};
     one.detection.covariance = Eigen::Matrix2d::Identity() * std::pow(kPositionSd / metres, 2);
@@ -154,10 +150,11 @@ std::vector<TreeCandidate> detect_by_network(const ImageInfo& info, double metre
   return kept;
 }
 
-}  // namespace
-
-DetectResult detect_trees(const DetectionPlan& plan, int threads,
-                          const pipeline::ProgressMeter::Listener& progress) {
+/// Method `imagery` finds crowns in colour images with a trained network, or as dark green blobs in images
+/// finer than 0.25 m without infrared. `peaks` and `lmf` find treetops in a single band of heights above
+/// ground. Throws Error{input} for an image in degrees, Error{usage} for a method that does not fit the
+/// image's bands.
+DetectResult detect_trees(const DetectionPlan& plan) {
   const ImageInfo& info = plan.image->info();
   const int bands = band_count(info.path);
   const std::string method = !plan.method.empty() ? plan.method : bands >= 3 ? "imagery" : "peaks";
@@ -173,12 +170,11 @@ DetectResult detect_trees(const DetectionPlan& plan, int threads,
                 info.path, "colour images are searched with --method imagery");
   DetectResult found;
   const double metres = pixel_metres(plan, found);
-  const TypeId type = all_types().id("tree");
-  found.detections = empty_detections(plan, type);
+  found.detections = empty_detections(plan);
   std::vector<TreeCandidate> kept = imagery && (bands > 3 || metres >= kFinePixel)
-                                        ? detect_by_network(info, metres, type, threads, progress)
-                                        : detect_by_canopy(plan, metres, method, type, threads, progress);
-  const double min_confidence = imagery ? plan.min_confidence : plan.min_treetop_confidence;
+                                        ? detect_by_network(plan, metres)
+                                        : detect_by_canopy(plan, metres, method);
+  const double min_confidence = plan.min_confidence.value_or(imagery ? kUsualConfidence : 0);
   std::erase_if(kept, [&](const TreeCandidate& one) {
     const double diameter = one.detection.outline.diameter();
     return one.detection.confidence < min_confidence || diameter < plan.search.min_diameter ||
@@ -193,6 +189,24 @@ DetectResult detect_trees(const DetectionPlan& plan, int threads,
     found.detections.features.push_back(std::move(one.features));
   }
   return found;
+}
+
+}  // namespace
+
+void register_image_trees(ImageDetectorTable& detectors);
+void register_image_trees(ImageDetectorTable& detectors) {
+  detectors.add({.name = "trees",
+                 .summary = "Trees, by their crowns in colours or in heights above ground",
+                 .type = "tree",
+                 .methods = {{.name = "imagery", .remark = "colour"},
+                             {.name = "peaks", .record = "heights"},
+                             {.name = "lmf", .record = "heights", .remark = "heights above ground"}},
+                 .method_by = "by the bands of the image",
+                 .search = {.min_diameter = 1, .reduce_for_large = false},
+                 .smallest = 0.1,
+                 .lists_sizes = false,
+                 .confidence_text = "nothing of trees found by heights",
+                 .make = [] { return ImageDetector{.find = detect_trees}; }});
 }
 
 }  // namespace waymark::workflows
