@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/output_error.hpp"
 #include "exporters/vector/crater_count.hpp"
 #include "exporters/vector/export_check.hpp"
@@ -198,6 +199,7 @@ std::string label_title(const std::vector<std::string>& types, const fs::path& m
 }  // namespace
 
 ExportSummary export_map(const fs::path& map_path, const std::string& out, const ExportOptions& options) {
+  keep_inputs(out, {map_path.string()});
   if (options.driver.empty() && is_crater_count(out)) return export_crater_count(map_path, out, options);
   const VectorFormat format = vector_format(out, options.driver);
   if (!options.label.empty() && format.driver != kPds4)

@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/output_error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/tables/area_of_interest.hpp"
@@ -122,6 +123,7 @@ void write_detections(const exporters::ImageDetections& found, const DetectionOu
   contents.run = run_record(found, output);
   geodb::write_map(output.path, contents, {.empty_tables = {type.name}});
 }
+  keep_inputs(request.output, {request.image, request.aoi, request.verifier});
 
 }  // namespace
 

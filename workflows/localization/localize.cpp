@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "exporters/vector/track_formats.hpp"
@@ -258,6 +259,9 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   if (!request.output.empty()) check_track_output(request.output, request.in_map_crs);
   MethodTable methods;  // of this call: a method keeps its settings
   register_methods(methods);
+  keep_inputs(request.output, {request.map, request.log, request.sensor, request.layers, request.write_map});
+  keep_inputs(request.write_map, {request.map, request.log});
+  for (const std::string& output : {request.output, request.write_map}) keep_inputs(output, request.dem);
   LocalizeMethod& method = methods.find(request.method);
   check_written_map(request, method);
   const std::shared_ptr<const SensorProfile> sensor =

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/rotate_axes.hpp"
 #include "exporters/raster/cog_stream.hpp"
@@ -174,9 +175,10 @@ void check(const HazardMapRequest& request) {
     refuse(fmt::format("the polygons '{}' do not end in .gpkg", request.polygons), "they are a GeoPackage");
   if (!request.nav2.empty() && fs::path(request.nav2).extension() != ".yaml")
     refuse(fmt::format("the map of Nav2 '{}' does not end in .yaml", request.nav2), "");
-  std::error_code missing;
-  if (!request.polygons.empty() && fs::equivalent(request.polygons, request.input, missing))
-    refuse(fmt::format("the polygons would replace the map {}", request.input), "name another file");
+  for (const std::string& output : {request.output, request.polygons, request.nav2}) {
+    keep_inputs(output, {request.input, request.aoi, request.vehicle});
+    keep_inputs(output, request.dem);
+  }
   if (!(0 < request.min_uncertain && request.min_uncertain <= request.min_hazard && request.min_hazard <= 1))
     refuse(fmt::format("--uncertain {:g} and --hazard {:g} are no increasing probabilities",
                        request.min_uncertain, request.min_hazard),

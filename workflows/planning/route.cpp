@@ -13,6 +13,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/rotate_axes.hpp"
 #include "geo/axes_rotation.hpp"
@@ -57,9 +58,11 @@ void check(const RouteRequest& request) {
   if (!(request.speed > 0)) refuse(fmt::format("--speed {:g} is not above 0 m/s", request.speed), "");
   if (request.worlds < 1 || request.alternatives < 1)
     refuse("--worlds and --alternatives are at least 1", "");
-  std::error_code missing;
-  if (std::filesystem::equivalent(request.output, request.map, missing))
-    refuse(fmt::format("the route would replace the map {}", request.map), "name another file");
+  check_number("--worlds", static_cast<double>(request.worlds), "", {.help = "", .min = 1, .max = 1e5});
+  check_number("--view", request.view, "deg", {.help = "", .min = 0, .max = 360});
+  check_number("--range", request.range, "m", {.help = "", .min = 0, .max = 1e5});
+  keep_inputs(request.output, {request.map, request.aoi, request.hazards, request.odometry, request.sensor});
+  keep_inputs(request.output, request.dem);
   const std::string extension = std::filesystem::path(request.output).extension();
   if (extension != ".gpkg" && extension != ".geojson" && extension != ".csv")
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");

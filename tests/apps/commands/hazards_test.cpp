@@ -202,7 +202,7 @@ TEST_F(Hazards, RocksOfTheMapAreHazards) {
   ASSERT_EQ(imported.code, 0) << imported.err;
   const Outcome replaced = waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o",
                                     folder_ / "h.tif", "--polygons", folder_ / "m.gpkg"});
-  EXPECT_THAT(replaced.err, HasSubstr("the polygons would replace the map"));
+  EXPECT_THAT(replaced.err, HasSubstr("the output would replace the input"));
   const Outcome made =
       waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o", folder_ / "h.tif"});
   ASSERT_EQ(made.code, 0) << made.err;

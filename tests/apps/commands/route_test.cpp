@@ -288,7 +288,7 @@ TEST_F(RouteCommand, BadRequestsAreRefused) {
   EXPECT_THAT(route({}).err, HasSubstr("the route has no objective"));
   EXPECT_THAT(route({"--weight", "1", "--by-quality"}).err, HasSubstr("pass --keep-landmarks N"));
   EXPECT_THAT(route({"--weight", "1", "--vehicle", "rovver"}).err, HasSubstr("rover"));
-  EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the route would replace the map"));
+  EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the output would replace the input"));
   EXPECT_THAT(route({"--weight", "1", "--limit-sigma", "1"}).err, HasSubstr("more than one objective"));
   EXPECT_THAT(route({"--limit-sigma", "0.01"}).err, HasSubstr("the sd at the start, 0.1 m, exceeds"));
   EXPECT_THAT(route({"--weight", "1"}, "r.txt").err, HasSubstr("does not end in"));
