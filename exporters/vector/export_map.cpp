@@ -151,7 +151,7 @@ void refuse_existing(const std::string& out, bool overwrite) {
 std::vector<std::string> chosen_types(const geodb::MapStore& map, const std::vector<std::string>& asked) {
   std::vector<std::string> types;
   for (const std::string& type : asked.empty() ? map.types().names() : asked) {
-    static_cast<void>(map.types().id(type));  // throws with the nearest name
+    static_cast<void>(map.count(type));  // throws for a type that the map lacks
     if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
   }
   return types;
