@@ -39,7 +39,10 @@ class MosaicDem : public ImportedDem {
     GDALSetCacheMax64(memory_ / 8);  // GDAL's cache, used for VRTs and masks
     for (const RasterHeader& header : mosaic_.headers())
       warnings_.insert(warnings_.end(), header.warnings.begin(), header.warnings.end());
-    if (!import.area.empty()) area_ = read_area_of_interest(import.area, geometry().where.crs);
+    if (!import.area.empty()) {
+      area_ = read_area_of_interest(import.area, geometry().where.crs);
+      check_area_meets(*area_, geometry(), "the DEM", import.area);
+    }
     if (!import.inspect) return;
     for (std::string& warning : inspect(mosaic_, cache_bytes())) warnings_.push_back(std::move(warning));
   }
