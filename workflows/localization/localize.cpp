@@ -246,10 +246,7 @@ std::vector<OptionRow> settings_of(const LocalizeRequest& request) {
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings = make_settings(request, method, sensor.get(), {});
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings.describe(visitor);
-    method.describe(visitor);
-  };
+  const DescribeOptions options = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
   return option_table(options);
 }
 
@@ -267,10 +264,7 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings = make_settings(request, method, sensor.get(), callbacks);
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings.describe(visitor);
-    method.describe(visitor);
-  };
+  const DescribeOptions options = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
   check_number("--min-confidence", request.min_confidence, "", {.help = "", .min = 0, .max = 1});
   OpenedMap opened =
       request.map == "none" && !method.requires_map()
