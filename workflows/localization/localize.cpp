@@ -219,7 +219,8 @@ std::string find_mirrored(const LocalizeTask& task, const OpenedMap& map, Locali
     return method.run(other);
   };
   return mirror_warning(run(start), run(mirror_log(start, MirroredPart::sensors)),
-                        run(mirror_log(start, MirroredPart::robot)));
+                        run(mirror_log(start, MirroredPart::robot)),
+                        run(mirror_log(start, MirroredPart::motion)));
 }
 
 /// Warns of scans without usable ranges, and of a track that saw no landmark.
@@ -256,11 +257,11 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   if (!request.output.empty()) check_track_output(request.output, request.in_map_crs);
   MethodTable methods;  // of this call: a method keeps its settings
   register_methods(methods);
+  LocalizeMethod& method = methods.find(request.method);
+  check_written_map(request, method);
   keep_inputs(request.output, {request.map, request.log, request.sensor, request.layers, request.write_map});
   keep_inputs(request.write_map, {request.map, request.log});
   for (const std::string& output : {request.output, request.write_map}) keep_inputs(output, request.dem);
-  LocalizeMethod& method = methods.find(request.method);
-  check_written_map(request, method);
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings = make_settings(request, method, sensor.get(), callbacks);
