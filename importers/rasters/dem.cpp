@@ -85,4 +85,8 @@ std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
   return import.metric ? project_to_metres(std::move(dem)) : dem;
 }
 
+int band_count(const std::string& path) {
+  return open_raster(path)->GetRasterCount();
+}
+
 }  // namespace waymark::importers
