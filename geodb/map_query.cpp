@@ -111,6 +111,33 @@ std::vector<Landmark> nearest(MapStore::Connection& map, const Tables& tables, M
 
 }  // namespace
 
+std::optional<std::pair<double, double>> MapStore::range_of(const std::string& number,
+                                                            const std::vector<std::string>& types) const {
+  const MapQuery query{.types = types, .features = {{.feature = number}}};
+  const Tables tables = tables_for(*connection_, query);
+  check_query_columns(query, tables);
+  std::optional<std::pair<double, double>> range;
+  for (const LandmarkTable* table : tables) {
+    if (!number_column(table->layout, number)) continue;
+    const std::string column = quote_identifier(number);
+    sqlite::Statement row =
+        connection_->database.prepare("SELECT min(" + column + "), max(" + column + ") FROM " +
+                                      quote_identifier(table->layout.type().name));
+    if (!row.step()) continue;
+    const std::optional<double> low = row.optional_real(0), high = row.optional_real(1);
+    if (!low || !high) continue;
+    range = range ? std::pair{std::min(range->first, *low), std::max(range->second, *high)}
+                  : std::pair{*low, *high};
+  }
+  return range;
+}
+
+std::optional<MapQuery::Box> MapStore::extent() const {
+  const Envelope& box = connection_->extent;
+  if (box.empty()) return std::nullopt;
+  return MapQuery::Box{box.min_x, box.min_y, box.max_x, box.max_y};
+}
+
 std::vector<Landmark> MapStore::query(const MapQuery& query) const {
   const Tables tables = tables_for(*connection_, query);
   check_query_columns(query, tables);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 #include "geodb/map_contents.hpp"
 #include "geodb/map_query.hpp"
@@ -34,6 +35,12 @@ class MapStore {
   /// Returns the landmarks of a query; about 50 us for ten hits among a million. Throws Error{usage} for a
   /// feature that no queried type has.
   std::vector<Landmark> query(const MapQuery& query) const;
+  /// Returns the smallest and largest known value of a number of the landmarks, as in queries, of some types
+  /// (none named: of all); `std::nullopt` if none is known. Reads every row.
+  std::optional<std::pair<double, double>> range_of(const std::string& number,
+                                                    const std::vector<std::string>& types) const;
+  /// Returns the box of all landmarks; `std::nullopt` if the map has none.
+  std::optional<MapQuery::Box> extent() const;
   std::optional<Landmark> find(std::string_view uid) const;
   /// Returns the horizontal distance in metres, as in queries.
   double distance(const Landmark& landmark, double x, double y) const;

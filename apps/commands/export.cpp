@@ -75,8 +75,13 @@ class Export final : public Command {
     if (!aoi_.empty()) options_.inside = workflows::area_of_map(aoi_, map_).contains;
     const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
-    for (const exporters::ExportedLayer& layer : done.layers)
+    std::int64_t landmarks = 0;
+    for (const exporters::ExportedLayer& layer : done.layers) {
       log_summary(fmt::format("{} {}\n", layer.landmarks, layer.type));
+      landmarks += layer.landmarks;
+    }
+    if (landmarks == 0 && !aoi_.empty())
+      log_warning("no landmark lies in the area of interest, " + aoi_ + ": check its CRS");
     log_summary(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
     return 0;
   }

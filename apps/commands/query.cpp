@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <fmt/format.h>
-
 #include <iostream>
 
 #include "apps/command.hpp"
@@ -69,10 +67,7 @@ class Query final : public Command {
   int run(const Session&) override {
     request_.wgs84 = format_ == "geojson";
     const workflows::QueryResult found = workflows::query(map_, request_);
-    for (const std::string& number : found.unknown)
-      log_warning(
-          fmt::format("no landmark has a known '{}', so none meets a bound of it{}", number,
-                      number == "quality" ? ": it was not assessed; bound 'confidence' instead" : ""));
+    for (const std::string& reason : found.why_empty) log_warning(reason);
     RowContext context{.types = &found.types, .sensor = found.sensor.get()};
     if (!request_.near.empty() || !request_.nearest.empty())
       context.distance = [&](const Landmark& landmark) { return found.distances.at(landmark.uid); };

@@ -4,6 +4,7 @@
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
+#include "core/keep_inputs.hpp"
 #include "exporters/report/report_html.hpp"
 #include "workflows/evaluation/evaluate.hpp"
 #include "workflows/query/map_of_area.hpp"
@@ -59,6 +60,7 @@ class Report final : public Command {
 
   int run(const Session&) override {
     options_.interactive = !static_;
+    keep_inputs(html_, {map_, truth_, aoi_});
     const workflows::MapOfArea map(map_, aoi_, html_);
     for (const std::string& warning : map.warnings()) log_warning(warning);
     if (!truth_.empty()) options_.checks = workflows::check_quality(map.path(), truth_);

@@ -5,8 +5,10 @@
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/output_error.hpp"
@@ -35,6 +37,30 @@ bool has_spatial_index(GDALDataset& dataset, const std::string& layer) {
   const bool all = row && row->GetFieldAsInteger(0) == 4;
   dataset.ReleaseResultSet(found);
   return all;
+}
+
+/// Returns how far a reader would place the landmarks of a layer off their positions, at most, in metres.
+double displacement(OGRLayer& layer, const OGRSpatialReference& kept, const Crs& crs) {
+  OGREnvelope box;
+  if (layer.GetExtent(&box) != OGRERR_NONE) return 0;
+  OGRSpatialReference read(kept);
+  read.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRSpatialReference> degrees(read.CloneGeogCS());
+  if (!degrees) return 0;
+  degrees->SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  const std::unique_ptr<OGRCoordinateTransformation> to_degrees(
+      OGRCreateCoordinateTransformation(&read, degrees.get()));
+  if (!to_degrees) return 0;
+  const CrsTransform transform(crs, geographic_crs(crs));
+  const Geodesic geodesic(crs.body());
+  double max_distance = 0;
+  for (const auto& [x, y] : {std::pair(box.MinX, box.MinY), {box.MaxX, box.MaxY}}) {
+    double lon = x, lat = y;
+    const CrsTransform::XY is = transform(x, y);
+    if (!std::isfinite(is.x) || !to_degrees->Transform(1, &lon, &lat)) continue;
+    max_distance = std::max(max_distance, geodesic.distance({is.x, is.y}, {lon, lat}));
+  }
+  return max_distance;
 }
 
 }  // namespace
@@ -76,6 +102,12 @@ std::vector<std::string> check_export(const VectorFormat& format, const std::str
   if (kept == nullptr)
     return {fmt::format("{} does not store the CRS: readers need to know that it is {}", format.driver,
                         crs.id())};
+  constexpr double kMaxDisplacement = 1;  // m: parameters are stored with few digits
+  if (const double off = displacement(*dataset->GetLayer(0), *kept, crs); !(off < kMaxDisplacement))
+    throw Error(ErrorCode::output,
+                fmt::format("{} cannot hold the CRS {}: a reader would place landmarks {:.0f} m off",
+                            format.driver, crs.id(), off),
+                output_name, "write .gpkg, .fgb or .shp, or pass --crs, e.g. degrees");
   if (crs.authority().empty() || kept->GetAuthorityCode(nullptr) != nullptr) return {};
   return {fmt::format("{} stores the definition of the CRS, not its code {}", format.driver, crs.id())};
 }

@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/output_error.hpp"
 #include "exporters/vector/crater_count.hpp"
 #include "exporters/vector/export_check.hpp"
@@ -150,7 +151,7 @@ void refuse_existing(const std::string& out, bool overwrite) {
 std::vector<std::string> chosen_types(const geodb::MapStore& map, const std::vector<std::string>& asked) {
   std::vector<std::string> types;
   for (const std::string& type : asked.empty() ? map.types().names() : asked) {
-    static_cast<void>(map.types().id(type));  // throws with the nearest name
+    static_cast<void>(map.count(type));  // throws for a type that the map lacks
     if (std::find(types.begin(), types.end(), type) == types.end()) types.push_back(type);
   }
   return types;
@@ -198,6 +199,7 @@ std::string label_title(const std::vector<std::string>& types, const fs::path& m
 }  // namespace
 
 ExportSummary export_map(const fs::path& map_path, const std::string& out, const ExportOptions& options) {
+  keep_inputs(out, {map_path.string()});
   if (options.driver.empty() && is_crater_count(out)) return export_crater_count(map_path, out, options);
   const VectorFormat format = vector_format(out, options.driver);
   if (!options.label.empty() && format.driver != kPds4)

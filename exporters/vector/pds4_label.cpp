@@ -45,6 +45,9 @@ std::vector<std::string> pds4_label(std::span<const std::string> given, const st
     id->second += suffix;
   }
   std::vector<std::string> options;
+  // Latitudes of PROJ are planetographic; on a sphere both kinds agree.
+  if (crs.kind() != CrsKind::local && crs.body().flattening > 0)
+    options.emplace_back("LATITUDE_TYPE=Planetographic");
   for (const auto& [name, value] : values) options.push_back("VAR_" + name + "=" + value);
   return options;
 }

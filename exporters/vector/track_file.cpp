@@ -36,6 +36,10 @@ constexpr std::array<const char*, 20> kColumns{
 using Values = std::array<double, kColumns.size()>;
 constexpr std::size_t kWrong = 13;
 
+// The CRS -1 of GeoPackages. Without a CRS GDAL writes 0, which readers take for degrees.
+constexpr const char* kUndefinedCartesian =
+    R"(LOCAL_CS["Undefined Cartesian SRS",UNIT["Meter",1],AXIS["X",EAST],AXIS["Y",NORTH]])";
+
 /// Wrong matches are unknown if no matched sighting has an identity in the log.
 bool knows_wrong_matches(const localization::Track& track) {
   std::int64_t matched = 0;
@@ -186,6 +190,79 @@ localization::Track in_order_of_time(localization::Track track) {
   return track;
 }
 
+/// Throws Error{input}, which begins with `place`, if the values are none of a track.
+void check_values(const Values& values, const std::string& place) {
+  if (const auto wrong = impossible_column(values))
+    throw Error(ErrorCode::input,
+                fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]), place,
+                *wrong == 0 ? fmt::format("times are seconds, at most {:g} from 0", kMaxTime)
+                            : "counts are whole numbers from 0 to a million");
+}
+
+void count_named(localization::Track& track) {
+  for (const localization::TrackRow& row : track.rows) track.named += row.matched;
+}
+
+/// Reads the layer `track` of write_track_geopackage().
+TrackFile read_track_geopackage(const fs::path& file) {
+  const GdalMessages messages;
+  const char* only[] = {"GPKG", nullptr};
+  const std::unique_ptr<GDALDataset> set(
+      GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR | GDAL_OF_READONLY, only, nullptr, nullptr));
+  OGRLayer* layer = set ? set->GetLayerByName("track") : nullptr;
+  if (!layer)
+    throw Error(ErrorCode::input, set ? "the GeoPackage has no layer 'track'" : "this is no GeoPackage",
+                file.string(), "`waymark localize -o track.gpkg` writes one");
+  std::array<int, kColumns.size()> fields{};
+  for (std::size_t i = 0; i < fields.size(); ++i)
+    fields[i] = layer->GetLayerDefn()->GetFieldIndex(kColumns[i]);
+  if (fields[0] < 0 || fields[1] < 0 || fields[2] < 0)
+    throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", layer track",
+                "`waymark localize -o track.gpkg` writes such a layer");
+  TrackFile read;
+  bool wrong_known = fields[kWrong] >= 0;
+  for (const auto& feature : *layer) {
+    Values values{};
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      const bool has_value = fields[i] >= 0 && feature->IsFieldSetAndNotNull(fields[i]);
+      if (has_value) values[i] = feature->GetFieldAsDouble(fields[i]);
+      if (i < 3 && !(has_value && std::isfinite(values[i])))
+        throw Error(ErrorCode::input, fmt::format("a pose has no {}", kColumns[i]),
+                    fmt::format("{}, feature {}", file.string(), feature->GetFID()));
+      if (i == kWrong && !has_value) wrong_known = false;
+    }
+    check_values(values, fmt::format("{}, feature {}", file.string(), feature->GetFID()));
+    read.track.rows.push_back(row_of(values));
+  }
+  if (!messages.failures().empty())
+    throw Error(ErrorCode::input, messages.cause("it is damaged"), file.string(), "write the track again");
+  if (wrong_known) count_named(read.track);
+  const OGRSpatialReference* srs = layer->GetSpatialRef();
+  const bool on_body = srs && (srs->IsProjected() || srs->IsGeographic());
+  if (on_body && std::string_view(srs->GetName()) != "Undefined geographic SRS") {
+    const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+    char* wkt = nullptr;
+    srs->exportToWkt(&wkt, options);
+    read.crs = wkt;
+    CPLFree(wkt);
+  }
+  read.track = in_order_of_time(std::move(read.track));
+  return read;
+}
+
+/// Throws Error{input} for the formats of poses that localize writes without their times.
+void refuse_without_times(std::string_view content, const fs::path& file) {
+  const std::string_view line = content.substr(0, content.find('\n'));
+  std::istringstream words{std::string(line)};
+  int numbers = 0;
+  for (double number = 0; words >> number;) ++numbers;
+  const bool g2o = line.starts_with("VERTEX_") || line.starts_with("EDGE_"),
+             kitti = words.eof() && numbers == 12;
+  if (g2o || kitti)
+    throw Error(ErrorCode::input, fmt::format("poses of {} have no times", g2o ? "g2o" : "KITTI"),
+                file.string(), "write the track as .csv, .gpkg or .tum, which have them");
+}
+
 }  // namespace
 
 void write_track_csv(const fs::path& file, const localization::Track& track, const TrackOutput& output) {
@@ -220,12 +297,9 @@ void write_track_geopackage(const fs::path& file, const localization::Track& tra
       driver ? driver->Create(aside.path().c_str(), 0, 0, 0, GDT_Unknown, nullptr) : nullptr);
   if (!set) fail_output(file, messages.cause("GDAL has no GeoPackage driver"));
   OGRSpatialReference srs;
-  const bool on_body = output.crs->kind() != CrsKind::local;
-  if (on_body) {
-    srs.importFromWkt(output.crs->wkt2().c_str());
-    srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  }
-  OGRLayer* layer = set->CreateLayer("track", on_body ? &srs : nullptr, wkbPoint25D, nullptr);
+  srs.importFromWkt(output.crs->kind() == CrsKind::local ? kUndefinedCartesian : output.crs->wkt2().c_str());
+  srs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  OGRLayer* layer = set->CreateLayer("track", &srs, wkbPoint25D, nullptr);
   if (!layer) fail_output(file, messages.cause("no layer"));
   const std::size_t columns = columns_of(output);
   for (std::size_t i = 0; i < columns; ++i) {
@@ -266,6 +340,8 @@ localization::Track read_track(const fs::path& file, const LocalFrame* frame) {
 
 TrackFile read_track_file(const fs::path& file) {
   std::string content = read_text(file, "the track");
+  if (content.starts_with("SQLite format 3")) return read_track_geopackage(file);
+  refuse_without_times(content, file);
   if (content.starts_with("\xEF\xBB\xBF")) content.erase(0, 3);
   if (begins_like_tum(content)) return {in_order_of_time(read_track_tum(content, file)), {}};
   std::istringstream in(content);
@@ -275,9 +351,9 @@ TrackFile read_track_file(const fs::path& file) {
   const char separator = separator_of(line);
   const Header header = read_header(line, separator);
   if (!header.found[0] || !header.found[1] || !header.found[2])
-    throw Error(
-        ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
-        "`waymark localize -o track.csv` writes such files; TUM (t x y z qx qy qz qw) is read as well");
+    throw Error(ErrorCode::input, "a track has the columns t, x and y", file.string() + ", line 1",
+                "`waymark localize -o track.csv` writes such files; .gpkg and TUM (t x y z qx qy qz qw) are "
+                "read as well");
   TrackFile read;
   bool wrong_known = header.found[kWrong];
   for (std::size_t number = 2; std::getline(in, line); ++number) {
@@ -310,14 +386,10 @@ TrackFile read_track_file(const fs::path& file) {
     if (cells.size() > header.columns.size())
       refuse(fmt::format("{} values for {} columns", cells.size(), header.columns.size()),
              "is a decimal comma or a second separator in the line?");
-    if (const auto wrong = impossible_column(values))
-      refuse(fmt::format("{} = {:g} is not possible in a track", kColumns[*wrong], values[*wrong]),
-             *wrong == 0 ? fmt::format("times are seconds, at most {:g} from 0", kMaxTime)
-                         : "counts are whole numbers from 0 to a million");
+    check_values(values, fmt::format("{}, line {}", file.string(), number));
     read.track.rows.push_back(row_of(values));
   }
-  if (wrong_known)
-    for (const localization::TrackRow& row : read.track.rows) read.track.named += row.matched;
+  if (wrong_known) count_named(read.track);
   if (!read.crs.empty()) Crs::from_text(read.crs);  // its errors
   read.track = in_order_of_time(std::move(read.track));
   return read;

@@ -30,9 +30,9 @@ struct TrackFile {
   std::string crs = {};  ///< as Crs::from_text() takes it; empty: the map frame, or the file does not say
 };
 
-/// Reads such a CSV, or a file of TUM (read_track_tum()), and sorts the rows by time. Columns may be in any
-/// order, separated by commas, semicolons or tabs. t, x, y are required, others default to 0; Track::named
-/// counts the matches where `wrong` is known. Throws Error{input} with the line.
+/// Reads such a CSV or GeoPackage, or a file of TUM (read_track_tum()), and sorts the rows by time. Columns
+/// may be in any order, separated by commas, semicolons or tabs. t, x, y are required, others default to 0;
+/// Track::named counts the matches where `wrong` is known. Throws Error{input} with the line.
 TrackFile read_track_file(const std::filesystem::path& file);
 
 /// Returns the track of such a file in the map frame. Positions in the map's CRS are converted by `frame`.

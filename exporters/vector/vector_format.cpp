@@ -3,9 +3,11 @@
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
+#include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <set>
 #include <sstream>
 #include <string_view>
@@ -95,6 +97,26 @@ GDALDriver& driver_for(const std::string& out, const std::vector<GDALDriver*>& a
                   "name the format with -of, e.g. -of GeoJSON");
 }
 
+/// Returns the projection with a false easting and northing of 0.
+Crs without_false_origin(const Crs& crs) {
+  if (crs.kind() != CrsKind::projected) return crs;
+  OGRSpatialReference srs;
+  srs.importFromWkt(crs.wkt2().c_str());
+  const auto is_zero = [&](const char* name) { return std::abs(srs.GetProjParm(name, 0)) < 1e-9; };
+  if (is_zero(SRS_PP_FALSE_EASTING) && is_zero(SRS_PP_FALSE_NORTHING)) return crs;
+  srs.SetProjParm(SRS_PP_FALSE_EASTING, 0);
+  srs.SetProjParm(SRS_PP_FALSE_NORTHING, 0);
+  srs.SetProjCS((crs.name() + " without false origin").c_str());
+  if (OGR_SRSNode* root = srs.GetRoot(); root->FindChild("AUTHORITY") >= 0)
+    root->DestroyChild(root->FindChild("AUTHORITY"));
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  char* text = nullptr;
+  srs.exportToWkt(&text, options);
+  const std::string wkt = text;
+  CPLFree(text);
+  return Crs::from_text(wkt);
+}
+
 std::string cut(const std::string& name, std::size_t longest) {
   if (name.size() <= longest) return name;
   const std::size_t ending = name.find_last_of('_');
@@ -119,6 +141,7 @@ VectorFormat vector_format(const std::string& out, const std::string& driver_nam
   format.is_table = has(driver, GDAL_DCAP_NONSPATIAL) || format.driver == "CSV";
   format.only_wgs84 = is_in(kOnlyWgs84);
   format.reports_writes = !is_in(kSilent);
+  format.has_false_origin = format.driver != "PDS4";
   format.earth_only = format.only_wgs84 || format.driver == "GeoJSON";
   if (format.driver.ends_with("KML")) format.name_field = "Name", format.description_field = "Description";
   if (format.driver == "GPX") format.name_field = "name", format.description_field = "desc";
@@ -141,7 +164,8 @@ Crs output_crs(const VectorFormat& format, const Crs& map_crs, const std::string
                const std::string& what) {
   const Crs wgs84 = Crs::from_text("EPSG:4326");
   const bool on_earth = map_crs.kind() != CrsKind::local && map_crs.body().name == earth().name;
-  const Crs wanted = !asked.empty() ? Crs::from_text(asked) : format.earth_only && on_earth ? wgs84 : map_crs;
+  Crs wanted = !asked.empty() ? Crs::from_text(asked) : format.earth_only && on_earth ? wgs84 : map_crs;
+  if (!format.has_false_origin) wanted = without_false_origin(wanted);
   if (!wanted.same_as(map_crs)) static_cast<void>(CrsTransform(map_crs, wanted));  // throws PROJ's reason
   if (format.earth_only && !on_earth)
     throw Error(

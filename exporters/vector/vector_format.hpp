@@ -16,12 +16,13 @@ struct VectorFormat {
   bool earth_only = false;      ///< means longitude and latitude on WGS 84 by its definition
   bool only_wgs84 = false;      ///< and cannot hold another CRS
   std::string name_field = {};  ///< field for the name of a placemark; empty: none
-  std::string description_field = {};              ///< field for its description
-  std::int64_t bytes_per_landmark = 0;             ///< that GDAL holds until the file is closed
-  std::int64_t max_landmarks = 0;                  ///< in a layer; 0: no limit
-  std::size_t max_name_length = 0;                 ///< letters of a column name; 0: no limit
-  bool reports_writes = true;                      ///< GDAL reports every write that fails
-  bool has_index = true;                           ///< false: FlatGeobuf's spatial index is left out
+  std::string description_field = {};   ///< field for its description
+  std::int64_t bytes_per_landmark = 0;  ///< that GDAL holds until the file is closed
+  std::int64_t max_landmarks = 0;       ///< in a layer; 0: no limit
+  std::size_t max_name_length = 0;      ///< letters of a column name; 0: no limit
+  bool has_false_origin = true;         ///< false: a CRS is stored without false easting and northing
+  bool reports_writes = true;           ///< GDAL reports every write that fails
+  bool has_index = true;                ///< false: FlatGeobuf's spatial index is left out
   std::vector<std::string> creation_options = {};  ///< of GDAL, "NAME=VALUE", besides the usual ones
 };
 
@@ -30,7 +31,8 @@ struct VectorFormat {
 VectorFormat vector_format(const std::string& out, const std::string& driver);
 
 /// Chooses the CRS to write a map of `map_crs` in: `asked`, else the map's, else EPSG:4326 if the format
-/// requires it. `what` names the map in messages. Throws Error{usage} if the format cannot hold it, and with
+/// requires it; without its false easting and northing if the format cannot store them. `what` names the map
+/// in messages. Throws Error{usage} if the format cannot hold it, and with
 /// PROJ's reason if it is on another body.
 Crs output_crs(const VectorFormat& format, const Crs& map_crs, const std::string& asked,
                const std::string& what);

@@ -67,6 +67,10 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
   if (!how.topics.empty() && format != "rosbag2" && format != "mcap")
     throw Error(ErrorCode::usage, "topics are given for a log of the format " + format, path.string(),
                 "only bags of ROS 2 (rosbag2, mcap) have topics");
+  if (how.robot != 0 && format != "mrclam")
+    throw Error(ErrorCode::usage,
+                fmt::format("robot {} is asked for in a log of the format {}", how.robot, format),
+                path.string(), "only datasets of MRCLAM have several robots");
   if (format == "csv") return import_csv_log(path, how.columns, types, how.sensor);
   if (format == "waymark") return import_waymark_log(path, types, how.sensor, how.held_types);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);

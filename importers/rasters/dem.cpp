@@ -39,7 +39,10 @@ class MosaicDem : public ImportedDem {
     GDALSetCacheMax64(memory_ / 8);  // GDAL's cache, used for VRTs and masks
     for (const RasterHeader& header : mosaic_.headers())
       warnings_.insert(warnings_.end(), header.warnings.begin(), header.warnings.end());
-    if (!import.area.empty()) area_ = read_area_of_interest(import.area, geometry().where.crs);
+    if (!import.area.empty()) {
+      area_ = read_area_of_interest(import.area, geometry().where.crs);
+      check_area_meets(*area_, geometry(), "the DEM", import.area);
+    }
     if (!import.inspect) return;
     for (std::string& warning : inspect(mosaic_, cache_bytes())) warnings_.push_back(std::move(warning));
   }
@@ -80,6 +83,10 @@ class MosaicDem : public ImportedDem {
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import) {
   std::shared_ptr<const ImportedDem> dem = std::make_shared<const MosaicDem>(import);
   return import.metric ? project_to_metres(std::move(dem)) : dem;
+}
+
+int band_count(const std::string& path) {
+  return open_raster(path)->GetRasterCount();
 }
 
 }  // namespace waymark::importers

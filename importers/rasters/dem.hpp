@@ -47,4 +47,7 @@ class ImportedDem : public DemSource {
 /// remedy. Costs about 1 ms per file, and with `inspect` the reading of the overlaps.
 std::shared_ptr<const ImportedDem> import_dem(const DemImport& import);
 
+/// Returns the number of bands of a raster. Throws Error{input} if GDAL does not read it.
+int band_count(const std::string& path);
+
 }  // namespace waymark::importers

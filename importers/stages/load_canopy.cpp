@@ -117,6 +117,8 @@ struct LoadCanopy {
       opened.push_back(canopy);
     }
     const GridGeometry grid = common_grid(opened);
+    if (!all.area.empty())
+      check_area_meets(read_area_of_interest(all.area, grid.where.crs), grid, "the canopy", all.area);
     unit.write(dem, terrain ? terrain : DemHandle(std::make_shared<PlaneDem>(grid.where.crs, 0, 0)));
     unit.write(tiles, tiles_of(grid.columns, grid.rows, options.tile_cells));
     unit.write(canopies, std::move(opened));

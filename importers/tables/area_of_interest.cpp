@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "importers/tables/area_of_interest.hpp"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
 
@@ -115,6 +116,24 @@ Area read_area_of_interest(const std::string& path, const Crs& into) {
   if (polygons.empty())
     throw Error(ErrorCode::input, "the file of areas holds no polygon", path, "draw at least one polygon");
   return {std::move(polygons), into.kind() == CrsKind::geographic};
+}
+
+void check_area_meets(const Area& area, const GridGeometry& grid, const std::string& data,
+                      const std::string& path) {
+  const Georeference& at = grid.where;
+  const double right = static_cast<double>(grid.columns) - 0.5, bottom = static_cast<double>(grid.rows) - 0.5;
+  Eigen::AlignedBox2d box(Eigen::Vector2d(at.x(-0.5), at.y(bottom)));
+  box.extend(Eigen::Vector2d(at.x(right), at.y(-0.5)));
+  const Eigen::AlignedBox2d asked = area.box();
+  const double turns = at.crs.kind() == CrsKind::geographic ? 1 : 0;
+  for (double turn = -360 * turns; turn <= 360 * turns; turn += 360)
+    if (box.translated(Eigen::Vector2d(turn, 0)).intersects(asked)) return;
+  const auto extent = [](const Eigen::AlignedBox2d& of) {
+    return fmt::format("x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", of.min().x(), of.max().x(), of.min().y(),
+                       of.max().y());
+  };
+  throw Error(ErrorCode::input, "the area of interest lies off " + data, path,
+              fmt::format("{} covers {} in {}, the area {}", data, extent(box), at.crs.id(), extent(asked)));
 }
 
 }  // namespace waymark::importers

@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <string>
 #include <vector>
-#include "geo/crs.hpp"
+#include "geo/georeference.hpp"
 namespace waymark::importers {
 
 /// Area of interest: polygons, each an outer ring and its holes, in the CRS of the map.
@@ -32,5 +32,10 @@ class Area {
 /// before they are transformed. A layer without a CRS is taken to be in `into`; if `into` is local, every
 /// layer is. Throws Error{input} if there is no such file or it holds no polygon, and for another body.
 Area read_area_of_interest(const std::string& path, const Crs& into);
+
+/// Throws Error{input} if the boxes of the area, read from `path`, and of the grid do not meet. `data` names
+/// the grid in the message, e.g. "the DEM". Longitudes are equal modulo 360 degrees.
+void check_area_meets(const Area& area, const GridGeometry& grid, const std::string& data,
+                      const std::string& path);
 
 }  // namespace waymark::importers

@@ -77,6 +77,10 @@ void WeightOptions::describe(OptionVisitor& option) {
          {.help = "Probability that a right pairing passes", .min = 0.5, .max = 0.9999999});
   option("unmatched_cost", unmatched_cost,
          {.help = "paper: cost of a sighting without landmark; negative: the gate"});
+  describe_unseen(option);
+}
+
+void WeightOptions::describe_unseen(OptionVisitor& option) {
   option("expect_unseen", expect_unseen,
          {.help = "likelihood: unseen landmarks in view count against a pose"});
   option("detection", detection,

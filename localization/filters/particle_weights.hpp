@@ -37,6 +37,8 @@ struct WeightOptions {
   double unmatched_cost = -1;
 
   void describe(OptionVisitor& option);
+  /// Declares what `expect_unseen` reads, the last of describe().
+  void describe_unseen(OptionVisitor& option);
 };
 
 /// Returns the weights of eqs. 13-14: (e_max - e) / e_max. If all errors are equal (also all 0, or e_max =

@@ -97,7 +97,7 @@ py::dict query_map(const std::string& path, const py::dict& keywords) {
   for (const std::string& name : request.types.empty() ? found.types.names() : request.types)
     types[name.c_str()] = columns_of(found, name, !request.near.empty() || !request.nearest.empty());
   return py::dict(py::arg("types") = types, py::arg("crs") = found.crs.wkt2(),
-                  py::arg("unknown") = found.unknown);
+                  py::arg("why_empty") = found.why_empty);
 }
 
 const char* scale_name(Scale scale) {

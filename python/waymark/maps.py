@@ -2,11 +2,12 @@
 """Maps: landmarks as structured arrays and GeoDataFrames."""
 
 import os
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
 
-from . import _picture, _waymark
+from . import _picture, _waymark, errors
 from ._call import keywords
 from ._describe import takes
 
@@ -108,7 +109,10 @@ class Map:
         for side, texts in bounds.items():
             if texts:
                 given[side] = texts
-        return _waymark.query(self.path, keywords(types=types, **given))
+        found = _waymark.query(self.path, keywords(types=types, **given))
+        for reason in found["why_empty"]:
+            warnings.warn(reason, errors.Warning, stacklevel=3)
+        return found
 
     @takes("query", more=True)
     def query(self, types=None, **conditions):

@@ -15,6 +15,7 @@ namespace waymark::test {
 namespace {
 
 using nlohmann::json;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class AreaOfInterest : public testing::Test {
@@ -145,6 +146,44 @@ TEST_F(AreaOfInterest, OfCratersInADem) {
   };
   expect_same_inside({"craters", "--dem", make_dem(folder_ / "dem.tif", dem)}, 2000,
                      "urn:ogc:def:crs:EPSG::32632");
+}
+
+TEST_F(AreaOfInterest, OffTheDataIsRefusedWithBothExtents) {
+  const std::string dem = make_dem(folder_ / "dem.tif", twin_peaks()),
+                    chm = make_dem(folder_ / "chm.tif", cones_at_origin()),
+                    area = west_of(-999000, "urn:ogc:def:crs:EPSG::32632");
+  for (const std::vector<std::string>& command : {std::vector<std::string>{"peaks", dem},
+                                                  {"craters", "--dem", dem},
+                                                  {"hazards", dem},
+                                                  {"trees", "--chm", chm},
+                                                  {"trees", "--flights", "--chm", chm, chm},
+                                                  {"buildings", "--dsm", chm, "--dtm", chm}}) {
+    std::vector<std::string> words = command;
+    words.insert(words.end(), {"-o", folder_ / "none.gpkg", "--aoi", area});
+    if (command[0] == "hazards") words[3] = folder_ / "none.tif";
+    const Outcome said = waymark(words);
+    EXPECT_EQ(said.code, 1) << command[0];
+    EXPECT_THAT(said.err, AllOf(HasSubstr("the area of interest lies off the "), HasSubstr("covers x 50"),
+                                HasSubstr("the area x -1000000 to -999000")))
+        << command[0];
+  }
+}
+
+TEST_F(AreaOfInterest, OffTheDataInDegreesCountsTurns) {
+  MadeDem degrees = twin_peaks();
+  degrees.crs = "EPSG:4326";
+  degrees.geotransform = {359, 0.001, 0, 47, 0, -0.001};
+  const std::string dem = make_dem(folder_ / "dem.tif", degrees);
+  const auto area_at = [&](double lon) {
+    write_text(folder_ / "area.geojson",
+               fmt::format(R"({{"type": "Polygon", "coordinates": [[[{0}, 0], [{1}, 0], [{1}, 60], [{0}, 60],
+ [{0}, 0]]]}})",
+                           lon, lon + 2));
+    return folder_ / "area.geojson";
+  };
+  EXPECT_EQ(waymark({"peaks", dem, "-o", folder_ / "p.gpkg", "--aoi", area_at(-1.5)}).code, 0);
+  EXPECT_THAT(waymark({"peaks", dem, "-o", folder_ / "q.gpkg", "--aoi", area_at(10)}).err,
+              HasSubstr("lies off the DEM"));
 }
 
 TEST_F(AreaOfInterest, NeedsGroundInImages) {

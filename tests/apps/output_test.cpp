@@ -63,6 +63,62 @@ TEST_F(Output, ForeignFileIsNeverReplaced) {
   EXPECT_EQ(text_of(map), "a year of work");
 }
 
+TEST_F(Output, AnInputIsNeverReplaced) {
+  const std::string map = folder_ / "map.gpkg", dem = twins(), log = folder_ / "log.jsonl",
+                    area = folder_ / "area.geojson";
+  write_text(folder_ / "rocks.csv", "x,y,radius,height\n501500,5198500,0.5,0.5\n502500,5198000,0.5,0.5\n");
+  ASSERT_EQ(
+      waymark({"import", folder_ / "rocks.csv", "-o", map, "--type", "rock", "--map-crs", "EPSG:32632"}).code,
+      0);
+  write_text(log, R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0}}
+{"kind":"odometry","t":0,"v":0.5,"omega":0}
+{"kind":"sightings","t":0.4,"items":[{"type":"rock","range":6.2,"bearing":0.1}]}
+)");
+  write_text(area, R"({"type":"Polygon","coordinates":[[[5e5,5.1e6],[6e5,5.1e6],[6e5,5.3e6],[5e5,5.1e6]]]})");
+  const std::vector<std::vector<std::string>> commands{
+      {"peaks", map, "-o", map},
+      {"export", map, map, "--overwrite"},
+      {"export", map, map, "--overwrite", "-of", "beluga"},
+      {"import", map, "--rules", "trees", "-o", map},
+      {"report", map, "-o", map},
+      {"report", map, "-o", area, "--aoi", area},
+      {"view", map, "--dem", dem, "-o", map},
+      {"view", map, "--dem", dem, "-o", dem},
+      {"hazards", dem, "-o", dem},
+      {"hazards", map, "--dem", dem, "-o", dem},
+      {"observability", map, "--dem", dem, "--sensor", "horizontal_laser", "-o", dem},
+      {"route", map, "--from", "501500,5198500", "--to", "501540,5198500", "--sensor", "horizontal_laser",
+       "--least-sigma", "--aoi", area, "-o", area},
+      {"localize", map, log, "-o", map},
+      {"localize", map, log, "-o", folder_ / "t.csv", "--method", "slam", "--write-map", map},
+      {"map", log, "--poses", map, "-o", map},
+      {"merge", map, map, "-o", map},
+      {"stac", area, "-o", area}};
+  const std::string map_before = text_of(map), dem_before = text_of(dem), area_before = text_of(area);
+  for (const std::vector<std::string>& command : commands) {
+    const Outcome said = waymark(command);
+    EXPECT_NE(said.code, 0) << command[0];
+    EXPECT_THAT(said.err, HasSubstr("the output would replace the input")) << command[0];
+    ASSERT_EQ(text_of(map), map_before) << command[0];
+    ASSERT_EQ(text_of(dem), dem_before) << command[0];
+    ASSERT_EQ(text_of(area), area_before) << command[0];
+  }
+}
+
+TEST_F(Output, AFileIsNoFolder) {
+  const std::string dem = twins(), file = folder_ / "file";
+  write_text(file, "a year of work");
+  const std::string map = folder_ / "map.gpkg";
+  ASSERT_EQ(peaks(dem, map).code, 0);
+  for (const std::vector<std::string>& command :
+       {std::vector<std::string>{"stac", map, "-o", file}, {"web", map, "-o", file}}) {
+    const Outcome said = waymark(command);
+    EXPECT_EQ(said.code, 1);
+    EXPECT_THAT(said.err, Not(HasSubstr("fault of waymark"))) << command[0];
+    EXPECT_THAT(said.err, HasSubstr(file)) << command[0];
+  }
+}
+
 TEST_F(Output, AnEmptyFileIsReplaced) {
   const std::string map = folder_ / "map.gpkg";  // as mktemp makes it
   write_text(map, "");

@@ -102,6 +102,12 @@ def test_errors_have_problem_place_and_hint(peaks_map, tmp_path):
         waymark.open(peaks_map).landmarks("mountain_top", limit="many")
 
 
+def test_an_empty_answer_says_why(peaks_map):
+    map = waymark.open(peaks_map)
+    with pytest.warns(waymark.Warning, match="no landmark has 'prominence' of at least 1e"):
+        assert len(map.landmarks(min_prominence=1e6)) == 0
+
+
 def test_threads_may_query_one_map(peaks_map):
     from concurrent.futures import ThreadPoolExecutor
 

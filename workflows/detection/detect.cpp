@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/output_error.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/tables/area_of_interest.hpp"
@@ -81,15 +82,9 @@ std::optional<importers::Area> area_of(const DetectRequest& request, const Image
     throw Error(ErrorCode::usage, "the image has no position on the ground, so no area of interest applies",
                 image.path, "leave --aoi out, or give a georeferenced image in metres");
   importers::Area area = importers::read_area_of_interest(request.aoi, image.crs);
-  const Georeference& at = *image.ortho;
-  const double right = static_cast<double>(image.columns) - 0.5,
-               bottom = static_cast<double>(image.rows) - 0.5;
-  Eigen::AlignedBox2d box(Eigen::Vector2d(at.x(-0.5), at.y(bottom)));
-  box.extend(Eigen::Vector2d(at.x(right), at.y(-0.5)));
-  if (!box.intersects(area.box()))
-    throw Error(ErrorCode::input, "the area of interest does not meet the image", request.aoi,
-                fmt::format("the image covers x {:.10g} to {:.10g}, y {:.10g} to {:.10g} in {}",
-                            box.min().x(), box.max().x(), box.min().y(), box.max().y(), image.crs.id()));
+  GridGeometry grid{.columns = image.columns, .rows = image.rows, .where = *image.ortho};
+  grid.where.crs = image.crs;
+  importers::check_area_meets(area, grid, "the image", request.aoi);
   return area;
 }
 
@@ -129,6 +124,7 @@ DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   PlannedDetection planned = plan_detection(request);
   DetectionPlan& plan = planned.plan;
   if (!request.output.empty()) check_detection_output(request.output);
+  keep_inputs(request.output, {request.image, request.aoi, request.verifier});
   const std::optional<importers::Area> area = area_of(request, plan.image->info());
   const auto started = std::chrono::system_clock::now();
   for (const std::string& warning : plan.warnings) callbacks.warning(warning);

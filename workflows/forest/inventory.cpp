@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/text_file.hpp"
 #include "exporters/report/inventory_report.hpp"
@@ -129,6 +130,9 @@ InventoryResult inventory(const InventoryRequest& given, const Callbacks& callba
     request.stands = std::exchange(request.aoi, {});
   }
   check_request(request);
+  for (const std::string& output : {request.output, request.report})
+    keep_inputs(output, {request.stands, request.allometry, request.volume, request.recall});
+  keep_inputs(request.report, {request.map});
   InventoryResult result;
   const auto warn = [&](const std::string& warning) {
     callbacks.warning(warning);

@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/atomic_file.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/lower_case.hpp"
 #include "workflows/localization/robot_map.hpp"
 
@@ -82,6 +83,7 @@ std::optional<RobotFormat> parse_robot_format(std::string_view text) {
 
 std::int64_t export_robot_map(const RobotMapExport& request) {
   const std::filesystem::path output = request.output;
+  keep_inputs(output, {request.map});
   if (!request.overwrite && std::filesystem::exists(output))
     throw Error(ErrorCode::output, output.filename().string() + " exists already", request.output,
                 "remove it, choose another name, or allow it to be replaced with --overwrite");

@@ -52,10 +52,7 @@ void LiveLocalizer::open(const LocalizeRequest& request, const Callbacks& callba
 }
 
 void LiveLocalizer::use_noise_of(const LocalizeRequest& request) {
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings_->describe(visitor);
-    method_->describe(visitor);
-  };
+  const DescribeOptions options = [&](OptionVisitor& visitor) { method_->describe_all(*settings_, visitor); };
   share_odometry_noise(request, options, settings_->play, log_);
 }
 

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "exporters/vector/track_formats.hpp"
@@ -218,7 +219,8 @@ std::string find_mirrored(const LocalizeTask& task, const OpenedMap& map, Locali
     return method.run(other);
   };
   return mirror_warning(run(start), run(mirror_log(start, MirroredPart::sensors)),
-                        run(mirror_log(start, MirroredPart::robot)));
+                        run(mirror_log(start, MirroredPart::robot)),
+                        run(mirror_log(start, MirroredPart::motion)));
 }
 
 /// Warns of scans without usable ranges, and of a track that saw no landmark.
@@ -245,10 +247,7 @@ std::vector<OptionRow> settings_of(const LocalizeRequest& request) {
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings = make_settings(request, method, sensor.get(), {});
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings.describe(visitor);
-    method.describe(visitor);
-  };
+  const DescribeOptions options = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
   return option_table(options);
 }
 
@@ -260,13 +259,13 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
   register_methods(methods);
   LocalizeMethod& method = methods.find(request.method);
   check_written_map(request, method);
+  keep_inputs(request.output, {request.map, request.log, request.sensor, request.layers, request.write_map});
+  keep_inputs(request.write_map, {request.map, request.log});
+  for (const std::string& output : {request.output, request.write_map}) keep_inputs(output, request.dem);
   const std::shared_ptr<const SensorProfile> sensor =
       request.sensor.empty() ? nullptr : find_sensor(request.sensor, request.map);
   LocalizeSettings settings = make_settings(request, method, sensor.get(), callbacks);
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
-    settings.describe(visitor);
-    method.describe(visitor);
-  };
+  const DescribeOptions options = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
   check_number("--min-confidence", request.min_confidence, "", {.help = "", .min = 0, .max = 1});
   OpenedMap opened =
       request.map == "none" && !method.requires_map()

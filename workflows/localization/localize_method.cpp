@@ -28,16 +28,54 @@ void set_coverage(const SensorCoverage& coverage, LocalizeSettings& settings) {
   weight.detection = coverage.detection;
 }
 
+bool has_option(const DescribeOptions& options, const std::string& setting) {
+  const std::string name = setting.substr(0, setting.find('='));
+  return std::ranges::any_of(option_table(options), [&](const OptionRow& row) {
+    return row.name == name || (!name.empty() && row.field.formerly == name);
+  });
+}
+
+/// Returns the methods that read a setting. Throws Error{usage} if its value is out of range.
+std::vector<std::string> methods_with(const std::string& setting) {
+  MethodTable methods;
+  register_methods(methods);
+  std::vector<std::string> found;
+  for (const std::string& name : methods.names()) {
+    LocalizeMethod& method = methods.find(name);
+    LocalizeSettings settings;
+    const DescribeOptions options = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
+    if (!has_option(options, setting)) continue;
+    static_cast<void>(set_option(options, setting));
+    found.push_back(name);
+  }
+  return found;
+}
+
+bool is_of_other_method(const std::string& setting) {
+  return !methods_with(setting).empty();
+}
+
+std::string unused_warning(const std::string& setting, std::string_view method) {
+  return fmt::format("--set {} has no effect: --method {} does not read it, but {}", setting, method,
+                     fmt::join(methods_with(setting), ", "));
+}
+
 }  // namespace
 
-void LocalizeSettings::describe(OptionVisitor& option) {
-  identification.describe(option);
-  kalman.describe(option);
-  hypotheses.describe(option);
-  particles.describe(option);
+void LocalizeSettings::describe(OptionVisitor& option, const SettingGroups& groups) {
+  if (groups.identification) identification.describe(option);
+  if (groups.kalman) {
+    kalman.describe(option);
+    hypotheses.describe(option);
+  }
+  if (groups.particles)
+    particles.describe(option);
+  else if (groups.unseen)
+    particles.weight.describe_unseen(option);
   play.describe(option);
-  scans.describe(option);
-  sight.describe(option);
+  if (groups.scans) scans.describe(option);
+  if (groups.sight) sight.describe(option);
+  if (!groups.start) return;
   option("start_sd", start_sd, {.help = "Metres by which the start may be off", .min = 1e-6, .max = 1e6});
   option("start_yaw_sd", start_yaw_sd,
          {.help = "Radians by which the heading of the start may be off", .min = 1e-6, .max = 4});
@@ -86,13 +124,17 @@ LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& m
   LocalizeSettings settings;
   if (sensor) set_coverage(sensor->coverage, settings);
   settings.particles.seed = request.seed;
-  const DescribeOptions options = [&](OptionVisitor& visitor) {
+  const DescribeOptions all = [&](OptionVisitor& visitor) {
     settings.describe(visitor);
     method.describe(visitor);
   };
+  const DescribeOptions used = [&](OptionVisitor& visitor) { method.describe_all(settings, visitor); };
   for (const std::string& setting : request.set)
-    for (const std::string& warning : set_option(options, setting)) callbacks.warning(warning);
+    if (has_option(all, setting) || !is_of_other_method(setting))
+      for (const std::string& warning : set_option(all, setting)) callbacks.warning(warning);
   settings.check_distance(request.method);
+  for (const std::string& setting : request.set)
+    if (!has_option(used, setting)) callbacks.warning(unused_warning(setting, method.name()));
   settings.identification.use_identities = request.use_identities;
   settings.particles.threads = request.threads;
   return settings;
@@ -102,7 +144,8 @@ void share_odometry_noise(const LocalizeRequest& request, const DescribeOptions&
                           localization::ReplayOptions& play, localization::RobotLog& log) {
   if (log.odometry) play.odometry = *log.odometry;
   play.drift = log.drift;
-  for (const std::string& setting : request.set) static_cast<void>(set_option(options, setting));
+  for (const std::string& setting : request.set)
+    if (has_option(options, setting)) static_cast<void>(set_option(options, setting));
   log.odometry = play.odometry, log.drift = play.drift;
 }
 

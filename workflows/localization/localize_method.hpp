@@ -16,7 +16,18 @@
 #include "workflows/localization/robot_map.hpp"
 namespace waymark::workflows {
 
-/// Settings that all methods share (--set of `waymark localize`).
+/// Groups of LocalizeSettings that a method reads. All methods read those of the replay, such as the noise of
+/// the odometry.
+struct SettingGroups {
+  bool identification = true;
+  bool kalman = true;  ///< of the Kalman filters, and of a sum of Gaussians
+  bool particles = true;
+  bool unseen = true;  ///< `expect_unseen` and the sensor's view, part of `particles`
+  bool scans = true, sight = true;
+  bool start = true;  ///< standard deviations of the start
+};
+
+/// Settings that methods share (--set of `waymark localize`).
 struct LocalizeSettings {
   localization::IdentificationOptions identification;
   localization::KalmanOptions kalman;
@@ -27,7 +38,7 @@ struct LocalizeSettings {
   localization::LineOfSightOptions sight;
   double start_sd = 0.1, start_yaw_sd = 0.05;  ///< m, rad: standard deviations of the start
 
-  void describe(OptionVisitor& option);
+  void describe(OptionVisitor& option, const SettingGroups& groups = {});
   /// Throws Error{usage} if `distance=paper` cannot apply to all data association of the method, or if
   /// `alpha` is set without eq. 11.
   void check_distance(const std::string& method) const;
@@ -80,8 +91,15 @@ class LocalizeMethod {
   virtual bool requires_map() const { return true; }
   /// Returns true if --update-map and --write-map apply.
   virtual bool updates_map() const { return false; }
+  /// Returns the groups of LocalizeSettings that the method reads.
+  virtual SettingGroups groups() const { return {}; }
   /// Declares settings beside LocalizeSettings.
   virtual void describe(OptionVisitor&) {}
+  /// Declares all settings that the method reads.
+  void describe_all(LocalizeSettings& settings, OptionVisitor& option) {
+    settings.describe(option, groups());
+    describe(option);
+  }
   virtual localization::Track run(LocalizeTask& task) = 0;
   /// Returns a localizer that takes readings one by one; null for a method that needs the whole log.
   virtual std::unique_ptr<localization::Localizer> make(LocalizeTask&) const { return nullptr; }
@@ -119,7 +137,8 @@ void use_survey_accuracy(const RobotMap& map, localization::ReplayOptions& play)
 struct LocalizeRequest;
 
 /// Returns the settings of a request, and sets those of the method itself. Throws Error{usage} for unknown
-/// ones, and for a distance that cannot apply. Sends warnings of former names.
+/// ones, and for a distance that cannot apply. Warns of former names, and of settings that only other methods
+/// read.
 LocalizeSettings make_settings(const LocalizeRequest& request, LocalizeMethod& method,
                                const SensorProfile* sensor, const Callbacks& callbacks);
 

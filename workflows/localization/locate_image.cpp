@@ -9,6 +9,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/units.hpp"
 #include "exporters/formatting.hpp"
@@ -218,11 +219,7 @@ CraterSearchOptions search_options(const LocateRequest& request, const Callbacks
 void check_outputs(const LocateRequest& request) {
   std::vector<std::string> inputs = request.detections;
   inputs.push_back(request.map);
-  for (const std::string& output : {request.output, request.matches})
-    for (const std::string& input : inputs)
-      if (std::error_code missing; !output.empty() && std::filesystem::equivalent(output, input, missing))
-        throw Error(ErrorCode::usage, fmt::format("the result would replace {}", input), output,
-                    "name another file");
+  for (const std::string& output : {request.output, request.matches}) keep_inputs(output, inputs);
 }
 
 }  // namespace

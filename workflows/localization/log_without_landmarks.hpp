@@ -6,7 +6,8 @@
 namespace waymark::workflows {
 
 /// Returns a warning if at most one in a thousand returns of the laser scans lies within the scanner's range:
-/// ranges in millimetres, or a wrong limit. Empty otherwise, and without scans.
+/// ranges in millimetres, or a wrong limit. Else one if whole scans have ranges of 0 or less only. Empty
+/// otherwise, and without scans.
 std::string unusable_ranges_warning(const localization::RobotLog& log);
 
 /// Returns a warning if the track used no sighting: it is dead reckoning, with fixes if the log has any.

@@ -75,7 +75,7 @@ localization::RobotLog mirror_log(const localization::RobotLog& log, MirroredPar
           constexpr bool kSensor = std::is_same_v<Reading, localization::SightingSet> ||
                                    std::is_same_v<Reading, localization::LaserScan>;
           if constexpr (!kAbsolute)
-            if (kSensor || part == MirroredPart::robot) mirror(reading, part);
+            if (kSensor ? part != MirroredPart::motion : part != MirroredPart::sensors) mirror(reading, part);
         },
         event.what);
   return other;
@@ -98,8 +98,15 @@ bool fits_badly(const Track& track) {
   return fit.sightings >= 20 && (2 * fit.matched < fit.sightings || 10 * fit.lost > std::ssize(track.rows));
 }
 
-std::string mirror_warning(const Track& as_written, const Track& with_sensors, const Track& with_robot) {
-  const Fit written(as_written), sensors(with_sensors), robot(with_robot);
+std::string mirror_warning(const Track& as_written, const Track& with_sensors, const Track& with_robot,
+                           const Track& with_motion_alone) {
+  const Fit written(as_written), sensors(with_sensors), robot(with_robot), motion(with_motion_alone);
+  if (motion.is_much_better_than(written) && motion.matched > std::max(sensors.matched, robot.matched))
+    return fmt::format(
+        "the log fits the map if left and right are exchanged in its motion: {} of {} sightings are matched, "
+        "as "
+        "written {} of {}; turns and steps to the left are positive",
+        motion.matched, motion.sightings, written.matched, written.sightings);
   const bool both = sensors.is_much_better_than(written) && robot.is_much_better_than(written);
   if (!both && !sensors.is_much_better_than(written) && !robot.is_much_better_than(written)) return {};
   const bool with_motion =

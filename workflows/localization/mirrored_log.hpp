@@ -9,6 +9,7 @@ namespace waymark::workflows {
 enum class MirroredPart {
   sensors,  ///< bearings and beams
   robot,    ///< these, and motion and mounts: the y axis of the robot points to the right
+  motion,   ///< motion alone, e.g. turns counted clockwise
 };
 
 /// Returns the log with left and right exchanged. Panoramas are left out.
@@ -21,10 +22,10 @@ localization::RobotLog beginning_of(const localization::RobotLog& log);
 /// less than half are matched, or a tenth of the rows is lost.
 bool fits_badly(const localization::Track& track);
 
-/// Returns a warning if the better track of a mirrored log fits much better: a quarter of its sightings is
+/// Returns a warning if the best track of a mirrored log fits much better: a quarter of its sightings is
 /// matched, at least twice as many as `as_written`, and no more rows are lost. Empty otherwise. The mean NIS
-/// decides whether the motion is mirrored, too, if it differs by a tenth.
+/// decides whether the motion is mirrored with the sensors, if it differs by a tenth.
 std::string mirror_warning(const localization::Track& as_written, const localization::Track& with_sensors,
-                           const localization::Track& with_robot);
+                           const localization::Track& with_robot, const localization::Track& with_motion);
 
 }  // namespace waymark::workflows

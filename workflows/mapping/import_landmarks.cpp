@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/rules/ready_rules.hpp"
@@ -130,6 +131,7 @@ std::string rules_text(const std::string& file_or_name) {
 
 importers::ImportedTable import_landmarks(const ImportRequest& request, const Callbacks& callbacks) {
   check_map_output(request.map);
+  keep_inputs(request.map, {request.table, request.mapping, request.rules, request.options.aoi});
   const auto started = std::chrono::system_clock::now();
   std::string file = request.table;
   const std::filesystem::path folder = std::filesystem::path(request.map).parent_path();

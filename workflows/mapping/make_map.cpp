@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
 #include "importers/points/find_las.hpp"
@@ -56,6 +57,9 @@ void check_request(const pipeline::Job& job, const MapRequest& request) {
                   std::string("no stage of the job writes '") + artifact + "', so there is no map", job.name,
                   "`waymark peaks DEM --print-job` shows a job that makes one");
   check_map_output(request.map);
+  for (const auto& step : job.pipeline.steps())
+    for (const std::string& file : step->input_files())
+      keep_inputs(request.map, {pipeline::resolve_path(job.pipeline.base_folder, file)});
 }
 
 geodb::RunRecord run_record(const pipeline::Job& job, const pipeline::RunResult& result,

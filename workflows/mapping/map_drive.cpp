@@ -10,6 +10,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "exporters/vector/track_file.hpp"
 #include "geo/local_frame.hpp"
 #include "geodb/write_map.hpp"
@@ -102,6 +103,7 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
   if (!(request.max_range > 0 && std::isfinite(request.max_range)))
     throw Error(ErrorCode::usage, "the range must be above 0 m", "--max-range", "e.g. --max-range 40");
   check_map_output(request.map);
+  keep_inputs(request.map, {request.log, request.poses});
   const auto started = std::chrono::system_clock::now();
   const TypeRegistry& types = all_types();
   const localization::ScanDetector detect =

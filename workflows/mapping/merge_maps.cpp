@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/locked_folder.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/output_error.hpp"
@@ -41,11 +42,8 @@ void check_request(const MergeRequest& request) {
         fmt::format("changes are those from one map to a second, not of {} maps", request.maps.size()),
         "--changes", "waymark merge EARLIER.gpkg LATER.gpkg --changes -o MAP.gpkg");
   check_number("--max-move", request.max_move, "m", {.help = "", .min = 0, .max = 1e6});
-  std::error_code missing;
-  for (const std::string& map : request.maps)
-    if (std::filesystem::equivalent(map, request.result, missing))
-      throw Error(ErrorCode::usage, "the result would replace a map that is merged", map,
-                  "pass another file by -o");
+  keep_inputs(request.result, request.maps);
+  keep_inputs(request.result, {request.aoi});
 }
 
 /// Returns the maps in the order of their names and contents, so that the order of the request does not

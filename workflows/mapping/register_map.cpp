@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "exporters/vector/map_subset.hpp"
 #include "geodb/shape_layer.hpp"
 #include "geodb/validate_map.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 void check_register(const RegisterRequest& request) {
   check_map_output(request.result);
+  keep_inputs(request.result, {request.map, request.catalogue, request.dem});
   if (!(request.rules.max_scale > 1 && std::isfinite(request.rules.max_scale)))
     throw Error(ErrorCode::usage,
                 fmt::format("--max-scale {:g} is not a factor above 1", request.rules.max_scale));

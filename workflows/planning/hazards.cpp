@@ -10,6 +10,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/rotate_axes.hpp"
 #include "exporters/raster/cog_stream.hpp"
@@ -61,6 +62,7 @@ std::shared_ptr<const importers::ImportedDem> open_dem(const HazardMapRequest& r
 
 /// Landmarks in the axes of the DEM.
 struct SiteObjects {
+  Eigen::AlignedBox2d box = {};  ///< of all landmarks
   std::vector<planning::HazardObject> objects;
   std::vector<double> rock_diameters;  ///< of shadow casters, weighted by nothing: confidence of at least 0.5
 };
@@ -80,6 +82,7 @@ SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const plann
         if (!std::isfinite(at.x)) return;
         landmark.position.xyz.x() = at.x, landmark.position.xyz.y() = at.y;
       }
+      site.box.extend(landmark.position.xyz.head<2>().eval());
       planning::HazardObject object = planning::hazard_object(landmark, type, vehicle);
       if (type.evidence == EvidenceModel::shadow_caster && landmark.confidence >= 0.5 && object.radius > 0)
         site.rock_diameters.push_back(2 * object.radius);
@@ -88,6 +91,22 @@ SiteObjects read_objects(const geodb::MapStore& map, const Crs& dem, const plann
       site.objects.push_back(object);
     });
   return site;
+}
+
+/// Throws Error{input} if the boxes of the map's landmarks and of the DEM do not meet.
+void check_on_dem(const SiteObjects& site, const GridGeometry& grid, const HazardMapRequest& request,
+                  const std::vector<std::string>& files) {
+  Eigen::AlignedBox2d dem(Eigen::Vector2d(grid.where.x(0), grid.where.y(0)));
+  const double right = static_cast<double>(grid.columns - 1), bottom = static_cast<double>(grid.rows - 1);
+  dem.extend(Eigen::Vector2d(grid.where.x(right), grid.where.y(bottom)));
+  if (site.box.isEmpty() || dem.intersects(site.box)) return;
+  const auto extent = [](const Eigen::AlignedBox2d& box) {
+    return fmt::format("x {:.10g} to {:.10g}, y {:.10g} to {:.10g}", box.min().x(), box.max().x(),
+                       box.min().y(), box.max().y());
+  };
+  throw Error(ErrorCode::input, "no landmark of the map lies on the DEM", files.empty() ? "" : files.front(),
+              fmt::format("it covers {}, the landmarks {} in {}: {}", extent(dem), extent(site.box),
+                          grid.where.crs.id(), request.input));
 }
 
 planning::UndetectedRocks undetected_rocks(const HazardMapRequest& request, const SiteObjects& site,
@@ -174,14 +193,19 @@ void check(const HazardMapRequest& request) {
     refuse(fmt::format("the polygons '{}' do not end in .gpkg", request.polygons), "they are a GeoPackage");
   if (!request.nav2.empty() && fs::path(request.nav2).extension() != ".yaml")
     refuse(fmt::format("the map of Nav2 '{}' does not end in .yaml", request.nav2), "");
-  std::error_code missing;
-  if (!request.polygons.empty() && fs::equivalent(request.polygons, request.input, missing))
-    refuse(fmt::format("the polygons would replace the map {}", request.input), "name another file");
+  for (const std::string& output : {request.output, request.polygons, request.nav2}) {
+    keep_inputs(output, {request.input, request.aoi, request.vehicle});
+    keep_inputs(output, request.dem);
+  }
   if (!(0 < request.min_uncertain && request.min_uncertain <= request.min_hazard && request.min_hazard <= 1))
     refuse(fmt::format("--uncertain {:g} and --hazard {:g} are no increasing probabilities",
                        request.min_uncertain, request.min_hazard),
            "0 < uncertain <= hazard <= 1");
-  if (!(request.rock_cover <= 1))
+  for (const auto& [name, value] :
+       {std::pair("--height-sd", request.height_sd), {"--detection-limit", request.detection_limit}})
+    if (!std::isnan(value)) check_number(name, value, "m", {.help = "", .min = 0, .max = 1e4});
+  check_number("--height-correlation", request.height_correlation, "m", {.help = "", .min = 0, .max = 1e6});
+  if (request.rock_cover < 0 || request.rock_cover > 1)
     refuse(fmt::format("--rock-cover {:g} is no fraction of the terrain", request.rock_cover),
            "0.01 is smooth, 0.07 typical of landing sites, 0.3 very rocky");
   check_number("--tile-cells", static_cast<double>(request.tile_cells), "",
@@ -258,7 +282,8 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
   warn_of_stretch(grid, request.input, callbacks);
   planning::HazardRequest hazard{
       .vehicle = vehicle,
-      .errors = {request.height_sd >= 0 ? request.height_sd : dem->height_sd(), request.height_correlation},
+      .errors = {std::isnan(request.height_sd) ? dem->height_sd() : request.height_sd,
+                 request.height_correlation},
       .min_uncertain = request.min_uncertain,
       .min_hazard = request.min_hazard};
   if (!(hazard.errors.sd > 0))
@@ -266,6 +291,7 @@ HazardMapResult make_hazard_map(const HazardMapRequest& request, const Callbacks
         "the standard deviation of the heights is unknown, limits are sharp: --height-sd gives it");
   SiteObjects site;
   if (map) site = read_objects(*map, grid.where.crs, vehicle);
+  check_on_dem(site, grid, request, dem->files());
   hazard.undetected =
       undetected_rocks(request, site, map ? &*map : nullptr, vehicle, grid.where.crs, cell, callbacks);
   HazardMapResult result{.objects = static_cast<std::int64_t>(site.objects.size()),

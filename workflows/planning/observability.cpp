@@ -11,6 +11,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "geo/point_at_height.hpp"
 #include "importers/tables/area_of_interest.hpp"
@@ -37,6 +38,8 @@ void check(const ObservabilityRequest& request) {
   };
   if (fs::path(request.output).extension() != ".tif")
     refuse(fmt::format("the raster '{}' does not end in .tif", request.output), "it is a GeoTIFF");
+  keep_inputs(request.output, {request.map, request.aoi, request.sensor});
+  keep_inputs(request.output, request.dem);
   if (!std::isnan(request.cell))
     check_number("--cell", request.cell, "m", {.help = "", .min = 0.1, .max = 1000});
   if (!(request.drive > 0 && request.drive <= 1e5))

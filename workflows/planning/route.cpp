@@ -13,6 +13,7 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/options/option_reader.hpp"
 #include "core/rotate_axes.hpp"
 #include "geo/axes_rotation.hpp"
@@ -48,7 +49,7 @@ void check(const RouteRequest& request) {
     if (!(value >= 0)) refuse(fmt::format("{} {:g} is negative", name, value), "");
   if (objectives != 1)
     refuse(objectives ? "more than one objective is given" : "the route has no objective",
-           "pass one of --limit-sigma M, --keep-landmarks N, --weight W, --least-sigma");
+           "pass one of --limit-sigma M, --keep-landmarks N, --weight W, each above 0, or --least-sigma");
   if (request.by_quality && !(request.keep_landmarks > 0))
     refuse("--by-quality is about the landmarks to keep in sight",
            "pass --keep-landmarks N, or leave it out");
@@ -57,9 +58,11 @@ void check(const RouteRequest& request) {
   if (!(request.speed > 0)) refuse(fmt::format("--speed {:g} is not above 0 m/s", request.speed), "");
   if (request.worlds < 1 || request.alternatives < 1)
     refuse("--worlds and --alternatives are at least 1", "");
-  std::error_code missing;
-  if (std::filesystem::equivalent(request.output, request.map, missing))
-    refuse(fmt::format("the route would replace the map {}", request.map), "name another file");
+  check_number("--worlds", static_cast<double>(request.worlds), "", {.help = "", .min = 1, .max = 1e5});
+  check_number("--view", request.view, "deg", {.help = "", .min = 0, .max = 360});
+  check_number("--range", request.range, "m", {.help = "", .min = 0, .max = 1e5});
+  keep_inputs(request.output, {request.map, request.aoi, request.hazards, request.odometry, request.sensor});
+  keep_inputs(request.output, request.dem);
   const std::string extension = std::filesystem::path(request.output).extension();
   if (extension != ".gpkg" && extension != ".geojson" && extension != ".csv")
     refuse(fmt::format("the route '{}' does not end in .gpkg, .geojson or .csv", request.output), "");
@@ -77,6 +80,19 @@ planning::Odometry read_odometry(const RouteRequest& request, const RobotMap& ma
   odometry.noise = *log.odometry, odometry.drift = log.drift;
   if (log.start_sd > 0) start_sd = log.start_sd, start_yaw_sd = log.start_yaw_sd;
   return odometry;
+}
+
+/// Throws Error{usage} for waypoints that one cell takes for the same position.
+void check_resolved(const std::vector<Waypoint>& points, const std::vector<std::int64_t>& stops,
+                    const planning::RouteCells& cells) {
+  for (std::size_t i = 0; i + 1 < stops.size(); ++i) {
+    const double apart = (points[i + 1].at - points[i].at).norm();
+    if (stops[i] != stops[i + 1] || apart <= cells.cell / 10) continue;
+    throw Error(ErrorCode::usage,
+                fmt::format("{} and {} lie in one cell of {:g} m, {:.3g} m apart", points[i].text,
+                            points[i + 1].text, cells.cell, apart),
+                "", fmt::format("--cell {:.2g}", apart / 2));
+  }
 }
 
 [[noreturn]] void fail_between(const RouteRequest& request, const Waypoint& from, const Waypoint& to) {
@@ -110,8 +126,10 @@ std::vector<std::string> important_landmarks(const LegPlanner& planner, const Ui
   return first;
 }
 
+/// Describes a route that ends in the cell of `goal`. The belief at the goal is that in the middle of its
+/// cell.
 PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids& uids,
-                      const std::vector<planning::Route>& legs) {
+                      const std::vector<planning::Route>& legs, const Eigen::Vector2d& goal) {
   const planning::RouteProblem& problem = planner.problem;
   PlannedRoute route;
   const planning::RouteCells& cells = problem.field.cells;
@@ -143,6 +161,17 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
                               planning::symmetric(rotate_axes(node.covariance.matrix(), rotation)),
                               position_sd(node.covariance), seen.landmarks,
                               important_landmarks(planner, uids, pose)});
+  }
+  const planning::RouteNode& last = nodes.back();
+  const Eigen::Vector2d rest = goal - Eigen::Vector2d(cells.x(last.cell), cells.y(last.cell));
+  if (rest.norm() > 1e-6 * cells.cell) {
+    RouteStation end = route.stations.back();
+    end.at = map.frame.crs_from_map_frame({{goal.x(), goal.y(), 0}}).xyz.head<2>();
+    end.distance += rest.norm();
+    end.yaw = localization::wrap_angle(std::atan2(rest.y(), rest.x()) + grid_rotation(map.frame, goal));
+    if (end.landmarks == 0) route.without_landmarks += rest.norm();
+    route.length += rest.norm();
+    route.stations.push_back(std::move(end));
   }
   route.final_sd = route.stations.back().sd;
   std::ranges::sort(worst, std::greater<>());
@@ -268,14 +297,19 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   Uids uids;
   for (const Landmark& landmark : map.store->query({}))
     uids[localization::landmark_key(landmark.uid)] = landmark.uid;
-  const planning::RouteCells cells = cells_for(points, request.cell, coverage.range);
+  const std::string& closing = hazards ? request.hazards : request.aoi;
+  check_known(points, classes, closing);
+  planning::RouteCells cells = cells_for(points, request.cell, coverage.range);
+  // The route begins where the vehicle is, in the middle of a cell.
+  cells.x0 += std::remainder(points[0].at.x() - cells.x0, cells.cell);
+  cells.y0 += std::remainder(points[0].at.y() - cells.y0, cells.cell);
   planning::RouteProblem& problem = planner.problem;
   problem.passable = passable_cells(cells, classes);
   if (!request.aoi.empty()) close_outside(request.aoi, map, points, cells, problem.passable);
   std::vector<std::int64_t> stops;
   for (const Waypoint& point : points)
-    stops.push_back(
-        cell_of(point, cells, problem.passable, classes, hazards ? request.hazards : request.aoi));
+    stops.push_back(cell_of(point, cells, problem.passable, classes, closing));
+  check_resolved(points, stops, cells);
   planner.sensing.identities_known = request.identities_known;
   planner.sensing.visible = planning_line_of_sight(map, request.dem, {.sensor_height = request.sensor_height},
                                                    sight_area(cells, coverage.range), callbacks);
@@ -295,11 +329,12 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   problem.advanced = [&](double done) { progress.advance(done); };
   const LegSequence sequence{request, planner, points, stops, problem.start};
 
+  const Eigen::Vector2d goal = points.back().at;
   RouteResult result;
   result.shortest =
-      describe(planner, map, uids, sequence.follow(1, [&] { return *planner.search({.labels = 1}); }));
-  result.routes.push_back(
-      describe(planner, map, uids, sequence.follow(planner.max_searches(), [&] { return planner.leg(); })));
+      describe(planner, map, uids, sequence.follow(1, [&] { return *planner.search({.labels = 1}); }), goal);
+  result.routes.push_back(describe(
+      planner, map, uids, sequence.follow(planner.max_searches(), [&] { return planner.leg(); }), goal));
   for (std::int64_t i = 1; i < request.alternatives; ++i) {
     // Along the front of length and worst sd: the next route is a tenth better, as far as one exists.
     const double limit = 0.9 * result.routes.back().worst_sd;
@@ -310,7 +345,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
       return route ? *route : *planner.search({.labels = 1});
     });
     if (!found) break;
-    result.routes.push_back(describe(planner, map, uids, legs));
+    result.routes.push_back(describe(planner, map, uids, legs, goal));
   }
   if (request.limit_sigma > 0) result.lower_bound = min_length(request, planner, cells, stops);
   progress.finish();

@@ -19,6 +19,19 @@ namespace {
 constexpr std::int64_t kMaxCells = 4'000'000;
 constexpr double kMaxExtent = 50e3;  // m from the origin of the map frame, which is a plane
 
+[[noreturn]] void fail_waypoint(const Waypoint& point, const HazardClasses* hazards,
+                                const std::string& file) {
+  const auto kind = hazards ? hazards->at(point.at.x(), point.at.y()) : planning::HazardClass::safe;
+  const char* problem = kind == planning::HazardClass::unknown
+                            ? "is on unknown terrain or outside the hazard map"
+                        : kind == planning::HazardClass::hazard ? "is in a hazard"
+                        : hazards ? "is beside a hazard or the border of the area, within a cell of the route"
+                                  : "is beside the border of the area, within a cell of the route";
+  throw Error(
+      ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
+      hazards ? "move it, make --cell finer, or pass --hazards none" : "move it, or make --cell finer");
+}
+
 }  // namespace
 
 Waypoint parse_waypoint(const std::string& name, const std::string& text, const RobotMap& map) {
@@ -49,11 +62,15 @@ Waypoint parse_waypoint(const std::string& name, const std::string& text, const 
 
 HazardClasses::HazardClasses(const std::string& file, const RobotMap& map) : frame_(map.frame) {
   // Classes are small whole numbers, which the importer of heights reads as they are.
-  raster_ = importers::import_dem({.files = {file},
-                                   .nodata = NodataPolicy::unknown,
-                                   .crs = map.crs().kind() == CrsKind::local ? "local" : "",
-                                   .band = static_cast<int>(planning::kHazardBands),
-                                   .inspect = false});
+  const importers::DemImport classes{.files = {file},
+                                     .nodata = NodataPolicy::unknown,
+                                     .crs = map.crs().kind() == CrsKind::local ? "local" : "",
+                                     .band = static_cast<int>(planning::kHazardBands),
+                                     .inspect = false};
+  if (importers::band_count(file) < classes.band)
+    throw Error(ErrorCode::input, "this is no hazard map: it has no classes", file,
+                "`waymark hazards` makes one");
+  raster_ = importers::import_dem(classes);
   const GridGeometry& grid = raster_->geometry();
   if (!grid.where.crs.same_as(map.crs())) transform_.emplace(map.crs(), grid.where.crs);
   classes_ = raster_->read({0, 0, grid.columns, grid.rows});
@@ -125,20 +142,18 @@ void close_outside(const std::string& aoi, const RobotMap& map, const std::vecto
   }
 }
 
+void check_known(const std::vector<Waypoint>& points, const HazardClasses* hazards, const std::string& file) {
+  for (const Waypoint& point : points)
+    if (hazards && hazards->at(point.at.x(), point.at.y()) == planning::HazardClass::unknown)
+      fail_waypoint(point, hazards, file);
+}
+
 std::int64_t cell_of(const Waypoint& point, const planning::RouteCells& cells,
                      const std::vector<char>& passable, const HazardClasses* hazards,
                      const std::string& file) {
   const std::int64_t cell = cells.index(point.at.x(), point.at.y());
   if (cell >= 0 && passable[static_cast<std::size_t>(cell)]) return cell;
-  const auto kind = hazards ? hazards->at(point.at.x(), point.at.y()) : planning::HazardClass::safe;
-  const char* problem = kind == planning::HazardClass::unknown
-                            ? "is on unknown terrain or outside the hazard map"
-                        : kind == planning::HazardClass::hazard ? "is in a hazard"
-                        : hazards ? "is beside a hazard or the border of the area, within a cell of the route"
-                                  : "is beside the border of the area, within a cell of the route";
-  throw Error(
-      ErrorCode::input, fmt::format("{} {}", point.text, problem), file,
-      hazards ? "move it, make --cell finer, or pass --hazards none" : "move it, or make --cell finer");
+  fail_waypoint(point, hazards, file);
 }
 
 }  // namespace waymark::workflows

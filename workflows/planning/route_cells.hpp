@@ -43,6 +43,10 @@ class HazardClasses {
   HeightWindow classes_;
 };
 
+/// Throws Error{input} if a waypoint is on unknown terrain or outside the hazard map `file`; nothing is
+/// checked without one.
+void check_known(const std::vector<Waypoint>& points, const HazardClasses* hazards, const std::string& file);
+
 /// Returns the cells of a search, with room for detours of half the distance, at least `range` metres, on all
 /// sides. Throws Error{usage} for over 4 million cells.
 planning::RouteCells cells_for(const std::vector<Waypoint>& points, double cell, double range);

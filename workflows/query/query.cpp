@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "core/error.hpp"
@@ -58,7 +57,7 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
     : crs_(request.crs.empty() ? map.crs() : Crs::from_text(request.crs)),
       limit_(static_cast<std::size_t>(check_not_negative("--limit", static_cast<double>(request.limit)))) {
   for (const std::string& type : request.types)
-    static_cast<void>(map.types().id(type));  // throws the nearest name
+    static_cast<void>(map.count(type));  // throws for a type that the map lacks
   query_.types = request.types;
   query_.min_quality = check_fraction("--min-quality", request.min_quality);
   query_.min_confidence = check_fraction("--min-confidence", request.min_confidence);
@@ -73,6 +72,7 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
     const auto [feature, value] = parse_feature_value("--max", text);
     query_.features.push_back({.feature = feature, .max_value = value});
   }
+  check_bounds();
   set_centre(request, map);
   set_box(request, map);
   if (!request.aoi.empty()) {
@@ -88,6 +88,14 @@ PreparedQuery::PreparedQuery(const QueryRequest& request, const geodb::MapStore&
   }
 }
 
+void PreparedQuery::check_bounds() const {
+  for (const auto& low : query_.features)
+    for (const auto& high : query_.features)
+      if (low.feature == high.feature && low.min_value > high.max_value)
+        throw Error(ErrorCode::usage, fmt::format("--min {0}={1:g} is above --max {0}={2:g}", low.feature,
+                                                  low.min_value, high.max_value));
+}
+
 void PreparedQuery::set_centre(const QueryRequest& request, const geodb::MapStore& map) {
   if (!request.near.empty()) {
     const auto centre = in_map("--near", request.near, crs_, map);
@@ -97,6 +105,8 @@ void PreparedQuery::set_centre(const QueryRequest& request, const geodb::MapStor
   if (!request.nearest.empty()) {
     const auto centre = in_map("--nearest", request.nearest, crs_, map);
     const double count = check_not_negative("COUNT of --nearest", request.nearest[2]);
+    if (count != std::floor(count))
+      throw Error(ErrorCode::usage, fmt::format("COUNT of --nearest must be a whole number, is {:g}", count));
     query_.nearest = geodb::MapQuery::NearestK{centre.x, centre.y, static_cast<std::int64_t>(count)};
   }
 }
@@ -130,16 +140,50 @@ std::vector<Landmark> PreparedQuery::run(const geodb::MapStore& map) const {
   return found;
 }
 
-std::vector<std::string> PreparedQuery::unknown_numbers(const geodb::MapStore& map) const {
-  constexpr double kLowest = std::numeric_limits<double>::lowest();  // excludes unknown values
-  std::vector<std::string> unknown;
-  for (const auto& range : query_.features)
-    if (map.query({.types = query_.types,
-                   .features = {{.feature = range.feature, .min_value = kLowest}},
-                   .limit = 1})
-            .empty())
-      unknown.push_back(range.feature);
-  return unknown;
+std::string PreparedQuery::explain_bound(const geodb::MapStore& map,
+                                         const geodb::MapQuery::FeatureRange& bound) const {
+  const std::string& number = bound.feature;
+  const auto range = map.range_of(number, query_.types);
+  if (!range)
+    return fmt::format("no landmark has a known '{}', so none meets a bound of it{}", number,
+                       number == "quality" ? ": it was not assessed; bound 'confidence' instead" : "");
+  const bool below = std::isfinite(bound.min_value);
+  const std::string stored = sensor_ && number == "quality" ? ""
+                                                            : fmt::format(": its values are {:.4g} to {:.4g}",
+                                                                          range->first, range->second);
+  return fmt::format("no landmark has '{}' of at {} {:g}{}", number, below ? "least" : "most",
+                     below ? bound.min_value : bound.max_value, stored);
+}
+
+std::vector<std::string> PreparedQuery::explain_empty(const geodb::MapStore& map) const {
+  if (limit_ == 0 || query_.limit == 0) return {};
+  const auto meets = [&](geodb::MapQuery one) {
+    one.types = query_.types, one.sensor = sensor_.get(), one.limit = 1;
+    return !map.query(one).empty();
+  };
+  if (!meets({}))
+    return {"the map has no landmark" + std::string(query_.types.empty() ? "" : " of these types")};
+  std::vector<std::string> reasons;
+  std::vector<geodb::MapQuery::FeatureRange> bounds = query_.features;
+  if (query_.min_confidence > 0)
+    bounds.push_back({.feature = "confidence", .min_value = query_.min_confidence});
+  if (query_.min_quality > 0) bounds.push_back({.feature = "quality", .min_value = query_.min_quality});
+  for (const auto& bound : bounds)
+    if (!meets({.features = {bound}})) reasons.push_back(explain_bound(map, bound));
+  if (query_.box || query_.near || inside_) {
+    PreparedQuery place = *this;
+    place.query_.features.clear();
+    place.query_.min_confidence = place.query_.min_quality = 0;
+    if (place.run(map).empty()) {
+      const geodb::MapQuery::Box all = *map.extent();
+      reasons.push_back(fmt::format(
+          "no landmark lies there: those of the map cover x {:.10g} to {:.10g}, y {:.10g} to {:.10g} in {}",
+          all.min_x, all.max_x, all.min_y, all.max_y, map.crs().id()));
+    }
+  }
+  if (reasons.empty())
+    reasons.emplace_back("no landmark meets all conditions, though some meet each of them");
+  return reasons;
 }
 
 double PreparedQuery::distance(const geodb::MapStore& map, const Landmark& landmark) const {
@@ -156,7 +200,7 @@ QueryResult query(const std::filesystem::path& file, const QueryRequest& request
       .crs = request.wgs84 ? exporters::output_crs(kGeoJson, map.crs(), "", file) : prepared.crs(),
       .sensor = prepared.sensor()};
   const std::vector<Landmark> found = prepared.run(map);
-  if (found.empty()) result.unknown = prepared.unknown_numbers(map);
+  if (found.empty()) result.why_empty = prepared.explain_empty(map);
   if (prepared.from_point())
     for (const Landmark& landmark : found) result.distances[landmark.uid] = prepared.distance(map, landmark);
   result.landmarks = transform_landmarks(found, map.types(), map.crs(), result.crs);

@@ -34,8 +34,7 @@ struct QueryResult {
   Crs crs;                                           ///< of the landmarks
   std::shared_ptr<const SensorProfile> sensor = {};  ///< null: equal weights
   std::vector<Landmark> landmarks = {};
-  std::vector<std::string> unknown =
-      {};  ///< bounded numbers that no landmark of the map has, if none is found
+  std::vector<std::string> why_empty = {};  ///< conditions that no landmark meets, if none is found
   std::unordered_map<std::string, double> distances = {};  ///< metres by uid, of queries about a point
 };
 
@@ -51,8 +50,9 @@ class PreparedQuery {
 
   const Crs& crs() const { return crs_; }  ///< of the request; the map's if it names none
   const std::shared_ptr<const SensorProfile>& sensor() const { return sensor_; }
-  /// Returns the numbers with a bound that no landmark of the requested types has.
-  std::vector<std::string> unknown_numbers(const geodb::MapStore& map) const;
+  /// Returns a sentence for each condition that no landmark of the requested types meets by itself, or one
+  /// that none meets all. Costs a query for each condition.
+  std::vector<std::string> explain_empty(const geodb::MapStore& map) const;
   /// Returns landmarks in the map's CRS.
   std::vector<Landmark> run(const geodb::MapStore& map) const;
   /// Returns true if the result is sorted by the distance from a point.
@@ -61,6 +61,9 @@ class PreparedQuery {
   double distance(const geodb::MapStore& map, const Landmark& landmark) const;
 
  private:
+  /// Throws Error{usage} if a number has a least value above its largest.
+  void check_bounds() const;
+  std::string explain_bound(const geodb::MapStore& map, const geodb::MapQuery::FeatureRange& bound) const;
   void set_centre(const QueryRequest& request, const geodb::MapStore& map);
   void set_box(const QueryRequest& request, const geodb::MapStore& map);
 

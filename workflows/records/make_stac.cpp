@@ -8,6 +8,8 @@
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
+#include "core/keep_inputs.hpp"
+#include "core/output_error.hpp"
 #include "pipeline/engine/runner.hpp"
 
 namespace waymark::workflows {
@@ -71,6 +73,7 @@ void check_request(const StacRequest& request) {
 
 StacResult make_stac(const StacRequest& request, const Callbacks& callbacks) {
   check_request(request);
+  keep_inputs(request.output, request.files);
   if (fs::path(request.output).extension() == ".json") {
     RecordFacts facts = facts_of(request, request.files.front(), fs::absolute(request.output).parent_path());
     facts.description = request.description;
@@ -83,7 +86,9 @@ StacResult make_stac(const StacRequest& request, const Callbacks& callbacks) {
   for (const std::string& file : request.files) items.push_back(facts_of(request, file, folder));
   const fs::path named = fs::absolute(folder / ".").lexically_normal().parent_path().filename();
   const std::string id = request.collection.empty() ? named.string() : request.collection;
-  fs::create_directories(folder);
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  if (failed) fail_output(folder, failed.message());
   StacResult result{.items = {}, .collection = (folder / "collection.json").string(), .id = id};
   for (const RecordFacts& facts : items) {
     result.items.push_back((folder / (facts.id + ".json")).string());

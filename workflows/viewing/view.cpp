@@ -11,6 +11,7 @@
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/keep_inputs.hpp"
 #include "core/locked_folder.hpp"
 #include "core/text_file.hpp"
 #include "exporters/vector/track_file.hpp"
@@ -118,6 +119,9 @@ localization::RobotLog read_view_log(const ViewPageRequest& request, const Robot
 
 ViewPageResult write_view(const ViewPageRequest& asked, const Callbacks& callbacks) {
   ViewPageRequest request = asked;
+  keep_inputs(request.output, {request.map, request.log, request.orthophoto, request.cameras});
+  keep_inputs(request.output, request.dem);
+  keep_inputs(request.output, request.tracks);
   std::optional<SceneFolder> scene;
   if (fs::is_directory(request.map)) scene.emplace(request);
   const RobotMap map = open_robot_map(request.map, nullptr, true).map;

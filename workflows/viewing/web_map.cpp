@@ -184,7 +184,9 @@ WebMapResult make_web_map(const WebMapRequest& request, const Callbacks& callbac
         "{} stands and crowns lie beyond the edges of web maps and are not on the map", shapes.outside));
 
   const fs::path output = request.output;
-  fs::create_directories(output);
+  std::error_code failed;
+  fs::create_directories(output, failed);
+  if (failed) fail_output(output, failed.message());
   AtomicFileSet files(output, output);
   const TileWriting writing{request.threads, callbacks};
   PmtilesFile landmarks(files.path() / exporters::kLandmarkTiles, output / exporters::kLandmarkTiles);

@@ -166,7 +166,7 @@ TEST_F(AreaOption, OfADetectionDropsWhatLiesOutside) {
   EXPECT_NEAR(double(rows()), double(all) / 2, 6);
   EXPECT_THAT(made.err, HasSubstr("outside the area of interest"));
   inside.back() = folder_ / "far.geojson";
-  EXPECT_THAT(waymark(inside).err, HasSubstr("the area of interest does not meet the image"));
+  EXPECT_THAT(waymark(inside).err, HasSubstr("the area of interest lies off the image"));
   EXPECT_EQ(bash("gdal_translate -q -of PNG --config GDAL_PAM_ENABLED NO '" + image + "' '" +
                  folder_ / "plain.png" + "'")
                 .code,

@@ -202,13 +202,37 @@ TEST_F(Hazards, RocksOfTheMapAreHazards) {
   ASSERT_EQ(imported.code, 0) << imported.err;
   const Outcome replaced = waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o",
                                     folder_ / "h.tif", "--polygons", folder_ / "m.gpkg"});
-  EXPECT_THAT(replaced.err, HasSubstr("the polygons would replace the map"));
+  EXPECT_THAT(replaced.err, HasSubstr("the output would replace the input"));
   const Outcome made =
       waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o", folder_ / "h.tif"});
   ASSERT_EQ(made.code, 0) << made.err;
   const std::vector<float> object = band(folder_ / "h.tif", 7);
   EXPECT_GT(object[30 * 80 + 20], 0.5);   // x = 500010.25
   EXPECT_LT(object[30 * 80 + 32], 0.01);  // 6 m off; the low rock is none
+}
+
+TEST_F(Hazards, AMapElsewhereIsRefused) {
+  wall("");
+  write_text(folder_ / "rocks.csv", "x,y,radius,height\n10,15,0.5,1\n15,10,0.1,0.1\n");
+  ASSERT_EQ(waymark({"import", folder_ / "rocks.csv", "-o", folder_ / "m.gpkg", "--type", "rock", "--map-crs",
+                     "local"})
+                .code,
+            0);
+  const Outcome made =
+      waymark({"hazards", folder_ / "m.gpkg", "--dem", folder_ / "wall.tif", "-o", folder_ / "h.tif"});
+  EXPECT_EQ(made.code, 1);
+  EXPECT_THAT(made.err, AllOf(HasSubstr("no landmark of the map lies on the DEM"), HasSubstr("covers x 5000"),
+                              HasSubstr("the landmarks x 10 to 15, y 10 to 15 in local")));
+}
+
+TEST_F(Hazards, NegativeNumbersAreRefused) {
+  wall("");
+  for (const char* option : {"--height-sd", "--rock-cover", "--detection-limit", "--height-correlation"}) {
+    const Outcome said =
+        waymark({"hazards", folder_ / "wall.tif", "--crs", "local", "-o", folder_ / "h.tif", option, "-0.1"});
+    EXPECT_EQ(said.code, 2) << option;
+    EXPECT_THAT(said.err, HasSubstr(std::string(option))) << option;
+  }
 }
 
 TEST_F(Hazards, VehiclesAreListedAndDescribed) {

@@ -174,6 +174,11 @@ TEST_F(LocalizeBadInput, AllRejectedForMinutesThenLandmarksReturn) {
     }
 }
 
+TEST_F(LocalizeBadInput, ARobotIsOneOfMrclam) {
+  EXPECT_THAT(refusal(drive_log({}), 2, {"--robot", "3"}),
+              AllOf(HasSubstr("robot 3 is asked for in a log of the format waymark"), HasSubstr("MRCLAM")));
+}
+
 // Eqs. 9-11 as a whole: each sighting alone, and nothing that decides by another distance.
 TEST_F(LocalizeBadInput, DistanceOfThePaperIsTheWholeChain) {
   const std::string log = drive_log({.steps = 200});

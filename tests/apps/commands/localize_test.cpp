@@ -110,6 +110,33 @@ TEST_F(Localize, SettingsNeedNeitherMapNorLog) {
   EXPECT_THAT(waymark({"localize", "--method", "pf"}).err, HasSubstr("needs MAP.gpkg"));
 }
 
+TEST_F(Localize, SettingsThatTheMethodDoesNotReadAreSaid) {
+  const std::string log = drive_log({});
+  const auto said = [&](const std::string& method, const std::string& setting) {
+    const Outcome done = localize(log, {"--method", method, "--set", setting});
+    EXPECT_EQ(done.code, 0) << done.err;
+    return done.err;
+  };
+  ASSERT_EQ(localize(log, {"--method", "ekf"}).code, 0);
+  const std::string without = text_of(track_);
+  EXPECT_THAT(said("ekf", "particles=50"),
+              HasSubstr("--set particles=50 has no effect: --method ekf does not read it, but global, pf"));
+  EXPECT_EQ(text_of(track_), without);
+  EXPECT_THAT(said("ekf", "slam_match=4"), HasSubstr("does not read it, but graph, slam"));
+  EXPECT_THAT(said("pf", "hypotheses=9"), HasSubstr("does not read it, but ekf, ukf"));
+  EXPECT_THAT(said("pf", "least_weight=1e-5"),
+              HasSubstr("does not read it, but ekf, ukf"));  // its former name
+  EXPECT_THAT(said("odometry", "gate=0.9"), HasSubstr("has no effect"));
+  for (const auto& [method, setting] : {std::pair("ekf", "detection=0.5"),
+                                        {"pf", "particles=50"},
+                                        {"slam", "slam_match=4"},
+                                        {"odometry", "along_per_metre=0.1"},
+                                        {"beacons", "range_offset_sd=1"}})
+    EXPECT_THAT(said(method, setting), Not(HasSubstr("has no effect")));
+  EXPECT_THAT(localize(log, {"--method", "ekf", "--set", "particles=1"}).err, HasSubstr("is outside [10"));
+  EXPECT_THAT(localize(log, {"--method", "ekf", "--settings"}).out, Not(HasSubstr("particles=")));
+}
+
 TEST_F(Localize, WrongMatchesAreNotKnownWithoutIdentities) {
   ASSERT_EQ(localize(drive_log({.named = false}), {"--method", "ekf", "--ids", "unknown"}).code, 0);
   EXPECT_GT(score()["matches"], 0);

@@ -234,7 +234,7 @@ TEST_F(Locate, SaysWhatIsMissing) {
               HasSubstr("focal length is negative"));
   const Outcome replaced = waymark({"locate", map_, folder_ / "good.csv", "-o", map_});
   EXPECT_EQ(replaced.code, 2);
-  EXPECT_THAT(replaced.err, HasSubstr("the result would replace"));
+  EXPECT_THAT(replaced.err, HasSubstr("the output would replace"));
   EXPECT_THAT(waymark({"locate", "--settings"}).out, HasSubstr("max_wrong"));
   write_text(folder_ / "plain.csv", "type,x,y,radius\ncrater,1,2,3\n");
   ASSERT_EQ(

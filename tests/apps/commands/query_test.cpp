@@ -91,7 +91,39 @@ TEST_F(Query, ABoundOfAnUnknownNumberIsSaid) {
   const Outcome empty = query({"--min", "quality=0.9"});
   EXPECT_EQ(empty.code, 0);
   EXPECT_THAT(empty.err, HasSubstr("no landmark has a known 'quality'"));
-  EXPECT_THAT(query({"--min", "elevation=5000"}).err, IsEmpty());
+}
+
+TEST_F(Query, AnEmptyAnswerSaysWhy) {
+  const auto reason = [](const std::vector<std::string>& words) {
+    const Outcome empty = query(words);
+    EXPECT_EQ(empty.code, 0) << empty.err;
+    return empty.err;
+  };
+  EXPECT_THAT(reason({"--min", "elevation=5000"}),
+              HasSubstr("no landmark has 'elevation' of at least 5000: its values are 700 to 900"));
+  EXPECT_THAT(reason({"--max", "elevation=5"}), HasSubstr("of at most 5: its values are 700 to 900"));
+  EXPECT_THAT(reason({"--min", "elevation=800", "--max", "prominence=400"}),
+              HasSubstr("no landmark meets all conditions, though some meet each of them"));
+  EXPECT_THAT(reason({"--bbox", "0", "0", "9", "9"}),
+              HasSubstr("cover x 501500 to 505500, y 5198500 to 5198500 in EPSG:32632"));
+  EXPECT_THAT(reason({"--near", "0", "0", "5"}), HasSubstr("no landmark lies there"));
+  EXPECT_THAT(reason({"--crs", "EPSG:4326", "--bbox", "1", "1", "2", "2"}),
+              HasSubstr("no landmark lies there"));
+  EXPECT_THAT(reason({"--limit", "0"}), IsEmpty());
+  EXPECT_THAT(reason({"--min", "elevation=800"}), IsEmpty());
+}
+
+TEST_F(Query, BoundsThatExcludeEachOtherAreRefused) {
+  const Outcome said = query({"--min", "elevation=900", "--max", "elevation=800"});
+  EXPECT_EQ(said.code, 2);
+  EXPECT_THAT(said.err, HasSubstr("--min elevation=900 is above --max elevation=800"));
+  EXPECT_THAT(query({"--nearest", "0", "0", "2.5"}).err,
+              HasSubstr("COUNT of --nearest must be a whole number, is 2.5"));
+}
+
+TEST_F(Query, ATypeThatTheMapLacksIsNotCalledUnknown) {
+  EXPECT_THAT(query({"--type", "crater"}).err, AllOf(HasSubstr("this map has no landmarks of type 'crater'"),
+                                                     HasSubstr("it has: mountain_top")));
 }
 
 TEST_F(Query, ByExpectedVisibility) {

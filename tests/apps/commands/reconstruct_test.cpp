@@ -2,6 +2,9 @@
 // `waymark reconstruct` through the program: products, the map, and what is said of input that cannot work.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -64,6 +67,60 @@ TEST_F(ReconstructCommand, StopsAtTheStageAskedAndStartsAtACoarseDem) {
   EXPECT_THAT(dem.err, HasSubstr("% measured"));
   EXPECT_TRUE(fs::exists(folder_ / "out/dem.tif"));
   EXPECT_FALSE(fs::exists(folder_ / "out/orthophoto.tif"));
+}
+
+// Edges of a raster: west, south, east, north.
+std::array<double, 4> edges_of(const std::string& raster) {
+  const json corners = json::parse(bash("gdalinfo -json '" + raster + "'").out)["cornerCoordinates"];
+  return {corners["lowerLeft"][0], corners["lowerLeft"][1], corners["upperRight"][0],
+          corners["upperRight"][1]};
+}
+
+TEST_F(ReconstructCommand, AnAreaOfInterestCropsTheProducts) {
+  const std::string truth = (flight() / "truth/cameras.json").string(), area = folder_ / "area.geojson";
+  ASSERT_EQ(run(truth, {"--cell", "1"}).code, 0);
+  const auto [west, south, east, north] = edges_of(folder_ / "out/dem.tif");
+  fs::rename(folder_ / "out", folder_ / "whole");
+  const auto write_area = [&](double x0, double y0, double x1, double y1) {
+    write_text(
+        area, json{{"type", "Polygon"}, {"coordinates", {{{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}, {x0, y0}}}}}
+                  .dump());
+  };
+  // A box of the middle that begins and ends within cells.
+  const double x0 = west + 0.4 * (east - west), x1 = west + 0.6 * (east - west);
+  const double y0 = south + 0.4 * (north - south), y1 = south + 0.6 * (north - south);
+  write_area(x0, y0, x1, y1);
+  const Outcome made = run(truth, {"--cell", "1", "--aoi", area});
+  ASSERT_EQ(made.code, 0) << made.err;
+  for (const char* file : {"out/dem.tif", "out/orthophoto.tif"}) {
+    const auto [left, bottom, right, top] = edges_of(folder_ / file);
+    for (const auto& [wanted, is] : {std::pair(x0, left), {y0, bottom}, {-x1, -right}, {-y1, -top}}) {
+      EXPECT_LE(is, wanted + 1e-6) << file;
+      EXPECT_GT(is, wanted - 1 - 1e-6) << file << ": the cell that the edge lies in";
+    }
+  }
+  std::vector<double> differences;
+  for (double u = 0.2; u < 0.9; u += 0.2)
+    for (double v = 0.2; v < 0.9; v += 0.2) {
+      const std::string at = std::to_string(x0 + u * (x1 - x0)) + " " + std::to_string(y0 + v * (y1 - y0));
+      const auto height = [&](const std::string& dem) {
+        return bash("gdallocationinfo -valonly -b 1 -geoloc '" + dem + "' " + at).out;
+      };
+      const std::string part = height(folder_ / "out/dem.tif"), whole = height(folder_ / "whole/dem.tif");
+      ASSERT_FALSE(part.empty() || whole.empty()) << at;
+      differences.push_back(std::abs(std::stod(part) - std::stod(whole)));
+    }
+  std::ranges::sort(differences);
+  // Half a pixel on the ground, 2 x 90 m x tan 30 deg / 200: the cells outside no longer smooth those inside.
+  EXPECT_LT(differences[differences.size() / 2], 0.26);
+
+  write_area(east + 500, south, east + 600, north);
+  const Outcome off = run(truth, {"--aoi", area});
+  EXPECT_EQ(off.code, 1);
+  EXPECT_THAT(off.err, HasSubstr("the area of interest does not meet the terrain that two images see"));
+  const Outcome poses = run(truth, {"--until", "poses", "--aoi", area});
+  EXPECT_EQ(poses.code, 2);
+  EXPECT_THAT(poses.err, HasSubstr("--aoi limits DEM and orthophoto, but --until poses makes none"));
 }
 
 TEST_F(ReconstructCommand, OneViewIsTooFew) {

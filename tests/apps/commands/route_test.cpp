@@ -281,14 +281,74 @@ TEST_F(RouteCommand, YawsAreOfTheGridOfTheMap) {
             std::numbers::pi / 8 + 1e-3);
 }
 
+TEST_F(RouteCommand, BeginsAndEndsWhereAsked) {
+  const auto ends = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"route",   map_, "--sensor", "horizontal_laser", "--view",       "360",
+                                   "--range", "15", "-o",       folder_ / "r.csv",  "--least-sigma"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome done = waymark(words);
+    EXPECT_EQ(done.code, 0) << done.err;
+    std::istringstream lines(text_of(folder_ / "r.csv"));
+    std::vector<std::array<double, 3>> stations;  // distance, x, y
+    std::string line;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      std::array<double, 3> station{};
+      for (double& value : station) {
+        std::string cell;
+        std::getline(cells, cell, ',');
+        value = std::stod(cell);
+      }
+      stations.push_back(station);
+    }
+    double length = 0;
+    for (std::size_t k = 1; k < stations.size(); ++k)
+      length += std::hypot(stations[k][1] - stations[k - 1][1], stations[k][2] - stations[k - 1][2]);
+    EXPECT_NEAR(stations.back()[0], length, 0.01);
+    return std::pair(stations.front(), stations.back());
+  };
+  for (const char* cell : {"2", "3.7"}) {
+    const auto [first, last] = ends({"--from=-20.63,3.28", "--to", "31.41,5.92", "--cell", cell});
+    EXPECT_NEAR(first[1], -20.63, 1e-4);
+    EXPECT_NEAR(first[2], 3.28, 1e-4);
+    EXPECT_NEAR(last[1], 31.41, 1e-4);
+    EXPECT_NEAR(last[2], 5.92, 1e-4);
+  }
+  const Outcome coarse = route({"--least-sigma", "--cell", "500"});
+  EXPECT_EQ(coarse.code, 2);
+  EXPECT_THAT(
+      coarse.err,
+      HasSubstr("--from -100,0 and --to 100,0 lie in one cell of 500 m, 200 m apart\n  --cell 1e+02"));
+}
+
+TEST_F(RouteCommand, HazardsAreAHazardMap) {
+  const std::string dem =
+      make_dem(folder_ / "dem.tif",
+               {.columns = 300, .rows = 300, .crs = "", .geotransform = {-150, 1, 0, 150, 0, -1}});
+  EXPECT_THAT(route({"--least-sigma", "--hazards", dem}).err,
+              AllOf(HasSubstr("this is no hazard map"), HasSubstr("`waymark hazards` makes one")));
+  ASSERT_EQ(waymark({"hazards", map_, "--dem", dem, "-o", folder_ / "hazard.tif"}).code, 0);
+  // Farther than a search reaches: what is wrong is the position.
+  EXPECT_THAT(route({"--least-sigma", "--hazards", folder_ / "hazard.tif", "--via", "9000,0"}).err,
+              HasSubstr("--via 9000,0 is on unknown terrain or outside the hazard map"));
+}
+
 TEST_F(RouteCommand, BadRequestsAreRefused) {
   EXPECT_THAT(route({"--weight", "-1"}).err, HasSubstr("--weight -1 is negative"));
   EXPECT_THAT(route({"--weight", "1", "--start-sd", "-1"}).err, HasSubstr("--start-sd -1 is negative"));
   EXPECT_THAT(route({"--weight", "1", "--speed", "0"}).err, HasSubstr("--speed 0 is not above 0 m/s"));
   EXPECT_THAT(route({}).err, HasSubstr("the route has no objective"));
+  EXPECT_THAT(route({"--limit-sigma", "0"}).err, HasSubstr("each above 0"));
+  EXPECT_THAT(route({"--weight", "1", "--worlds", "1000000000"}).err,
+              HasSubstr("--worlds = 1000000000 is outside [1, 100000]"));
+  EXPECT_THAT(waymark({"route", map_, "--from=0,0", "--to", "9,0", "--sensor", "horizontal_laser", "--view",
+                       "400", "--weight", "1", "-o", folder_ / "r.csv"})
+                  .err,
+              HasSubstr("--view = 400 is outside [0, 360] deg"));
   EXPECT_THAT(route({"--weight", "1", "--by-quality"}).err, HasSubstr("pass --keep-landmarks N"));
   EXPECT_THAT(route({"--weight", "1", "--vehicle", "rovver"}).err, HasSubstr("rover"));
-  EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the route would replace the map"));
+  EXPECT_THAT(route({"--weight", "1"}, "m.gpkg").err, HasSubstr("the output would replace the input"));
   EXPECT_THAT(route({"--weight", "1", "--limit-sigma", "1"}).err, HasSubstr("more than one objective"));
   EXPECT_THAT(route({"--limit-sigma", "0.01"}).err, HasSubstr("the sd at the start, 0.1 m, exceeds"));
   EXPECT_THAT(route({"--weight", "1"}, "r.txt").err, HasSubstr("does not end in"));

@@ -2,7 +2,11 @@
 // Records of maps and rasters, checked by what STAC 1.1.0 and its extensions demand.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
+#include <utility>
+#include <vector>
 
 #include "tests/apps/made_dem.hpp"
 #include "tests/apps/program.hpp"
@@ -191,6 +195,44 @@ TEST_F(Stac, Pds4LabelsAreFilledAndReadBack) {
   EXPECT_THAT(urn.err, HasSubstr("'rocks' is no logical identifier"));
   EXPECT_THAT(waymark({"export", map, folder_ / "a.geojson", "--label", "TITLE=x"}).err,
               HasSubstr("GeoJSON has no label"));
+}
+
+// PDS4 labels have no false easting, and planetocentric latitudes mean a sphere.
+TEST_F(Stac, Pds4LabelsPlaceLandmarksOfProjectionsWhereTheyAre) {
+  write_text(folder_ / "utm.csv",
+             "uid,x,y,radius,height\nr1,731919.8,4004847.7,1,1\nr2,762542.5,4037374,1,1\n");
+  const std::string map = folder_ / "utm.gpkg", label = folder_ / "utm.xml";
+  ASSERT_EQ(
+      waymark({"import", folder_ / "utm.csv", "-o", map, "--type", "rock", "--map-crs", "EPSG:32616"}).code,
+      0);
+  const Outcome made = waymark({"export", map, label, "-of", "PDS4"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("without false origin"));
+  EXPECT_THAT(text_of(label), HasSubstr("<cart:latitude_type>Planetographic<"));
+  const auto degrees = [&](const std::string& file) {
+    std::vector<std::pair<double, double>> found;
+    const std::string text = bash("ogr2ogr -q -f CSV -t_srs +proj=longlat -lco GEOMETRY=AS_XY /vsistdout/ '" +
+                                  file + "' 2>/dev/null")
+                                 .out;
+    std::istringstream lines(text);
+    std::string line, x, y;
+    std::getline(lines, line);
+    while (std::getline(lines, line)) {
+      std::istringstream cells(line);
+      std::getline(cells, x, ','), std::getline(cells, y, ',');
+      found.emplace_back(std::stod(x), std::stod(y));
+    }
+    std::ranges::sort(found);
+    return found;
+  };
+  ASSERT_EQ(waymark({"export", map, folder_ / "utm.fgb"}).code, 0);
+  const auto is = degrees(label), wanted = degrees(folder_ / "utm.fgb");
+  ASSERT_EQ(wanted.size(), 2u);
+  ASSERT_EQ(is.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(is[i].first, wanted[i].first, 1e-7);
+    EXPECT_NEAR(is[i].second, wanted[i].second, 1e-7);
+  }
 }
 
 TEST_F(Stac, BadRequestsAreRefused) {

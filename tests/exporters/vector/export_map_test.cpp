@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "exporters/report/report_html.hpp"
@@ -149,6 +150,28 @@ TEST_F(ExportMap, PlanetaryCrsIsRefusedWhereItWouldBeLost) {
   EXPECT_THAT(error_of([&] { export_map(mars, out("tops.geojson")); }),
               HasSubstr("GeoJSON holds positions on Earth only; this map is on Mars"));
   EXPECT_THAT(test::names_in(folder.path()), ElementsAre("earth.gpkg", "mars.gpkg", "two.gpkg"));
+}
+
+// Files of MapInfo have no false easting for the projection of EPSG:3035, and take Bessel's ellipsoid for
+// WGS 84.
+TEST_F(ExportMap, ACrsThatAFormatStoresWrongIsRefused) {
+  for (const auto& [crs, x, y, lost] : {std::tuple("EPSG:3035", 4321000.0, 3210000.0, true),
+                                        {"EPSG:31287", 500000.0, 400000.0, true},
+                                        {"EPSG:32632", 500000.0, 5200000.0, false},
+                                        {"EPSG:2154", 700000.0, 6600000.0, false}}) {
+    geodb::write_map(folder / "map.gpkg", test::three_summits(crs, x, y, 1000));
+    const std::string message =
+        error_of([&] { export_map(folder / "map.gpkg", out("tops.tab"), {.overwrite = true}); });
+    if (lost) {
+      EXPECT_THAT(message, HasSubstr(std::string("MapInfo File cannot hold the CRS ") + crs));
+      EXPECT_THAT(message, HasSubstr("a reader would place landmarks"));
+      EXPECT_FALSE(std::filesystem::exists(out("tops.tab")));
+      export_map(folder / "map.gpkg", out("tops.shp"), {.overwrite = true});
+    } else {
+      EXPECT_EQ(message, "") << crs;
+    }
+    std::filesystem::remove(folder / "map.gpkg");
+  }
 }
 
 TEST_F(ExportMap, EarthCrsForMarsIsRefusedWithTheReason) {

@@ -2,14 +2,18 @@
 // Tracks written in a CRS and read back, and tables of other programs.
 #include "exporters/vector/track_file.hpp"
 
+#include <gdal_priv.h>
 #include <gmock/gmock.h>
+#include <ogrsf_frmts.h>
 
 #include <functional>
+#include <string_view>
 
 #include "core/atomic_file.hpp"
 #include "core/error.hpp"
 #include "core/random.hpp"
 #include "core/text_file.hpp"
+#include "exporters/vector/track_formats.hpp"
 #include "tests/exporters/small_map.hpp"
 
 namespace waymark::test {
@@ -74,6 +78,57 @@ TEST_F(TrackFiles, OnesInACrsNameItAndComeBackToTheFrame) {
     const LocalFrame other(Crs::from_text("EPSG:32632"), {{500000, 5200000, 0}});
     EXPECT_THAT(problem_of([&] { read_track(file, &other); }), HasSubstr("the map in EPSG:32632"));
   }
+}
+
+TEST_F(TrackFiles, GeoPackagesAreReadBack) {
+  localization::Track track = made_track();
+  for (localization::TrackRow& row : track.rows) row.matched = 2;
+  const auto file = folder.path() / "t.gpkg";
+  for (const char* name : {"local", "EPSG:32633"}) {
+    const bool is_local = std::string_view(name) == "local";
+    const Crs crs = is_local ? Crs::local() : Crs::from_text(name);
+    const LocalFrame frame(crs, is_local ? Point<MapCrs>{} : Point<MapCrs>{{300000, 5200000, 700}});
+    write_track_geopackage(file, track, {.frame = &frame, .crs = &crs});
+    EXPECT_EQ(read_track_file(file).crs.empty(), is_local);
+    const localization::Track back = read_track(file, &frame);
+    ASSERT_EQ(back.rows.size(), track.rows.size());
+    for (std::size_t i = 0; i < track.rows.size(); ++i) {
+      const auto &a = track.rows[i].at, &b = back.rows[i].at;
+      EXPECT_EQ(back.rows[i].t, track.rows[i].t);
+      EXPECT_EQ(back.rows[i].matched, 2);
+      EXPECT_NEAR(a.pose.x, b.pose.x, 1e-6);
+      EXPECT_NEAR(a.pose.y, b.pose.y, 1e-6);
+      EXPECT_NEAR(localization::wrap_angle(a.pose.yaw - b.pose.yaw), 0, 1e-6);
+      EXPECT_TRUE(a.covariance.isApprox(b.covariance, 1e-6)) << b.covariance;
+    }
+    EXPECT_EQ(back.named, 0) << "wrong matches are not known";
+  }
+  write_small_map(folder.path() / "map.gpkg");
+  EXPECT_THAT(problem_of([&] { read_track_file(folder.path() / "map.gpkg"); }),
+              HasSubstr("no layer 'track'"));
+}
+
+// Readers take the CRS 0, which GDAL writes without one, for degrees.
+TEST_F(TrackFiles, AGeoPackageInLocalMetresIsCartesian) {
+  const Crs local = Crs::local();
+  const LocalFrame frame(local, {});
+  const auto file = folder.path() / "t.gpkg";
+  write_track_geopackage(file, made_track(), {.frame = &frame, .crs = &local});
+  EXPECT_THAT(content_of(file), HasSubstr("Undefined Cartesian SRS"));
+  GDALDatasetUniquePtr set(GDALDataset::Open(file.c_str(), GDAL_OF_VECTOR));
+  ASSERT_TRUE(set);
+  const OGRSpatialReference* srs = set->GetLayerByName("track")->GetSpatialRef();
+  EXPECT_TRUE(srs == nullptr || !srs->IsGeographic()) << srs->GetName();
+}
+
+TEST_F(TrackFiles, PosesWithoutTimesAreNamed) {
+  const auto file = folder.path() / "poses";
+  write_track_poses(file, made_track(), TrackFormat::kitti);
+  EXPECT_THAT(problem_of([&] { read_track_file(file); }), HasSubstr("poses of KITTI have no times"));
+  write_track_poses(file, made_track(), TrackFormat::g2o);
+  EXPECT_THAT(problem_of([&] { read_track_file(file); }), HasSubstr("poses of g2o have no times"));
+  write_track_poses(file, made_track(), TrackFormat::tum);
+  EXPECT_EQ(read_track_file(file).track.rows.size(), 50u);
 }
 
 TEST_F(TrackFiles, OnesInTheMapFrameNameNoCrs) {

@@ -32,6 +32,15 @@ TEST(LogWithoutLandmarks, RangesInMillimetresAreNamed) {
               HasSubstr("none of the 15 beams of the 5 laser scans has a range above 0"));
 }
 
+TEST(LogWithoutLandmarks, ScansOfZerosAmongOthersAreNamed) {
+  RobotLog log = log_of_scans({5, 7, kNoReturn});
+  for (const int i : {2, 3}) std::get<LaserScan>(log.events[std::size_t(i)].what).ranges = {0, 0, -1};
+  EXPECT_EQ(unusable_ranges_warning(log),
+            "2 of the 5 laser scans, at 1.000 to 1.500 s, have no range above 0 and show nothing");
+  for (const int i : {2, 3}) std::get<LaserScan>(log.events[std::size_t(i)].what).ranges = {kNoReturn};
+  EXPECT_EQ(unusable_ranges_warning(log), "");  // nothing in range
+}
+
 TEST(LogWithoutLandmarks, ScansInTheOpenAreNotNamed) {
   std::vector<float> open(400, 81.91F);  // how some scanners write a beam without a return
   open[7] = 12;

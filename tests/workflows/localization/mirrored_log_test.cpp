@@ -40,8 +40,9 @@ class MirroredLog : public testing::Test {
     Random random(5);
     std::string log = R"({"kind":"header","version":1,"start":{"x":0,"y":0,"yaw":0,"sd":0.1,"yaw_sd":0.02}})";
     for (int k = 0; k < 80; ++k) {
-      const double t = 0.5 * k, yaw = kTurn * t, x = std::sin(yaw) / kTurn, y = (1 - std::cos(yaw)) / kTurn;
-      log += "\n" + json{{"kind", "odometry"}, {"t", t}, {"v", 1}, {"omega", turn * kTurn}}.dump();
+      const double t = 0.5 * k, yaw = turn_rate_ * t, x = std::sin(yaw) / turn_rate_,
+                   y = (1 - std::cos(yaw)) / turn_rate_;
+      log += "\n" + json{{"kind", "odometry"}, {"t", t}, {"v", 1}, {"omega", turn * turn_rate_}}.dump();
       json items = json::array();
       for (const auto& [px, py] : kPoles) {
         const double range = std::hypot(px - x, py - y);
@@ -71,7 +72,7 @@ class MirroredLog : public testing::Test {
 
   std::string file(const std::string& name) const { return (folder_.path() / name).string(); }
 
-  static constexpr double kTurn = 0.02;  // rad/s
+  double turn_rate_ = 0.02;  // rad/s
   static constexpr std::pair<double, double> kPoles[] = {{4, 3},   {7, -5}, {11, 6},  {14, -2},
                                                          {17, 8},  {21, 1}, {24, 11}, {27, 3},
                                                          {29, 15}, {33, 7}, {35, 18}, {38, 12}};
@@ -91,6 +92,14 @@ TEST_F(MirroredLog, IsNamedAmongObjectsThatTheMapLacks) {
               testing::AllOf(HasSubstr("exchanged in its bearings and beams"), HasSubstr("its motion")));
 }
 
+// At 0.02 rad/s the filter corrects turns to the other side; at 0.3 rad/s it cannot.
+TEST_F(MirroredLog, TurnsToTheOtherSideAreNamed) {
+  turn_rate_ = 0.3;
+  EXPECT_EQ(warnings(1, 1), "");
+  EXPECT_THAT(warnings(1, -1), HasSubstr("exchanged in its motion"));
+  EXPECT_THAT(warnings(-1, -1), HasSubstr("exchanged in its bearings and beams and its motion"));
+}
+
 TEST(MirrorLog, TwiceIsTheSame) {
   localization::RobotLog log;
   localization::LaserScan scan{
@@ -108,6 +117,9 @@ TEST(MirrorLog, TwiceIsTheSame) {
   const localization::RobotLog sensors = mirror_log(log, MirroredPart::sensors);
   EXPECT_EQ(std::get<localization::TwistReading>(sensors.events[0].what).turn, 0.3);
   EXPECT_EQ(std::get<localization::LaserScan>(sensors.events[1].what).robot_from_sensor.y, 0.5);
+  const localization::RobotLog motion = mirror_log(log, MirroredPart::motion);
+  EXPECT_EQ(std::get<localization::TwistReading>(motion.events[0].what).turn, -0.3);
+  EXPECT_EQ(std::get<localization::LaserScan>(motion.events[1].what).first_angle, -1);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@ class Ekf final : public FilterMethod {
            "association";
   }
   StartPolicy start() const override { return StartPolicy::required_or_none; }
+  SettingGroups groups() const override { return {.particles = false}; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {

@@ -12,6 +12,7 @@ class Global final : public FilterMethod {
            "poses";
   }
   StartPolicy start() const override { return StartPolicy::ignored; }
+  SettingGroups groups() const override { return {.kalman = false, .start = false}; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {

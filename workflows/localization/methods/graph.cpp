@@ -48,6 +48,7 @@ class Graph final : public LocalizeMethod {
   StartPolicy start() const override { return StartPolicy::optional; }
   bool requires_map() const override { return false; }
   bool updates_map() const override { return true; }
+  SettingGroups groups() const override { return {.kalman = false, .particles = false, .unseen = false}; }
   void describe(OptionVisitor& option) override {
     options_.describe(option);
     slam_.describe(option);

@@ -11,6 +11,7 @@ class Pf final : public FilterMethod {
     return "particle filter, which finds the start if none is given";
   }
   StartPolicy start() const override { return StartPolicy::optional; }
+  SettingGroups groups() const override { return {.kalman = false}; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {

@@ -11,6 +11,7 @@ class Ukf final : public FilterMethod {
     return "unscented Kalman filter, square root form; without identities a sum of Gaussians, as ekf";
   }
   StartPolicy start() const override { return StartPolicy::required_or_none; }
+  SettingGroups groups() const override { return {.particles = false}; }
   void describe(OptionVisitor& option) override { search_.describe(option); }
 
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
