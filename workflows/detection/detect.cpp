@@ -124,7 +124,9 @@ DetectResult detect(const DetectRequest& request, const Callbacks& callbacks) {
   PlannedDetection planned = plan_detection(request);
   DetectionPlan& plan = planned.plan;
   if (!request.output.empty()) check_detection_output(request.output);
-  keep_inputs(request.output, {request.image, request.aoi, request.verifier});
+  std::vector<std::string> inputs{request.image, request.aoi};
+  for (const auto& [name, text] : request.settings) inputs.push_back(text);  // some name a file
+  keep_inputs(request.output, inputs);
   const std::optional<importers::Area> area = area_of(request, plan.image->info());
   const auto started = std::chrono::system_clock::now();
   for (const std::string& warning : plan.warnings) callbacks.warning(warning);
