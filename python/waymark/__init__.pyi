@@ -13,46 +13,6 @@ _Path = str | os.PathLike[str]
 
 class BeaconsSettings(TypedDict, total=False):
     """Settings of localize(method="beacons")."""
-    distance: str  # Distance of a sighting and a landmark: with all covariances, or eq. 11 of the paper
-    association: str  # Data association of the sightings of one set
-    gate: float  # Probability that a right pairing passes
-    certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
-    ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
-    feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
-    feature_limit: float  # Squared standard deviations by which one feature may differ
-    alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
-    clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
-    learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
-    node_limit: float  # Largest number of nodes of a joint search
-    quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
-    quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
-    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
-    use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
-    expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
-    detection: float  # Probability that a landmark in view is seen
-    view_range: float  # expect_unseen: range of the sensor, metres
-    view_angle: float  # expect_unseen: the sensor's whole field of view, radians
     along_per_metre: float  # Variance forward per metre driven, m^2/m
     across_per_metre: float  # Variance sideways per metre driven, m^2/m
     yaw_per_metre: float  # Variance of yaw per metre driven, rad^2/m
@@ -75,11 +35,6 @@ class BeaconsSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
-    scan_features: bool  # Use the diameters, radii and angles measured in scans
-    sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
-    landmark_height: float  # With --dem: height of a landmark that must be visible, metres
-    line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
     start_sd: float  # Metres by which the start may be off
     start_yaw_sd: float  # Radians by which the heading of the start may be off
     range_offset_sd: float  # Metres by which all ranges to one beacon may be off over the drive; 0: not at all
@@ -113,18 +68,6 @@ class EkfSettings(TypedDict, total=False):
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
     error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
     expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
     detection: float  # Probability that a landmark in view is seen
     view_range: float  # expect_unseen: range of the sensor, metres
@@ -190,13 +133,6 @@ class GlobalSettings(TypedDict, total=False):
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
     use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -240,8 +176,6 @@ class GlobalSettings(TypedDict, total=False):
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
     line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
-    start_sd: float  # Metres by which the start may be off
-    start_yaw_sd: float  # Radians by which the heading of the start may be off
     neighbours: float  # Nearest landmarks that make triangles with each one
     constellation_sigmas: float  # Standard deviations by which lengths and positions may differ
     false_alarms: float  # Largest expected number of chance poses of the whole map for an accepted fix
@@ -274,29 +208,6 @@ class GraphSettings(TypedDict, total=False):
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
     use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
-    expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
-    detection: float  # Probability that a landmark in view is seen
-    view_range: float  # expect_unseen: range of the sensor, metres
-    view_angle: float  # expect_unseen: the sensor's whole field of view, radians
     along_per_metre: float  # Variance forward per metre driven, m^2/m
     across_per_metre: float  # Variance sideways per metre driven, m^2/m
     yaw_per_metre: float  # Variance of yaw per metre driven, rad^2/m
@@ -357,46 +268,6 @@ class GraphSettings(TypedDict, total=False):
 
 class OdometrySettings(TypedDict, total=False):
     """Settings of localize(method="odometry")."""
-    distance: str  # Distance of a sighting and a landmark: with all covariances, or eq. 11 of the paper
-    association: str  # Data association of the sightings of one set
-    gate: float  # Probability that a right pairing passes
-    certainty: float  # joint: pairings less probable are rejected as ambiguous
-    bearing_certainty: float  # joint: the same for sightings without a range or a bearing, if it is more
-    ambiguity: float  # Other associations: lead in squared distance a landmark needs over the next
-    feature_tolerance: float  # Fraction of a feature's value by which two sensors may disagree
-    feature_limit: float  # Squared standard deviations by which one feature may differ
-    alpha: str  # Weights alpha_f of eq. 11 of the paper, e.g. rock.radius=4,rock.height=2; others follow from the landmark types
-    clutter: float  # Least density of sightings without a landmark, per metre of range and radian of bearing
-    learn_clutter: bool  # Estimate the density of sightings without a landmark over the drive
-    bearing_reach: float  # Largest range of a sighting without range, metres; 0: that of its landmark type, or of a sensor that measures no ranges
-    node_limit: float  # Largest number of nodes of a joint search
-    quality: str  # Use the probability that a landmark exists as prior of its pairings, or divide its noise by eq. 8 of the paper
-    quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
-    use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
-    use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
-    expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
-    detection: float  # Probability that a landmark in view is seen
-    view_range: float  # expect_unseen: range of the sensor, metres
-    view_angle: float  # expect_unseen: the sensor's whole field of view, radians
     along_per_metre: float  # Variance forward per metre driven, m^2/m
     across_per_metre: float  # Variance sideways per metre driven, m^2/m
     yaw_per_metre: float  # Variance of yaw per metre driven, rad^2/m
@@ -419,11 +290,6 @@ class OdometrySettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
-    scan_features: bool  # Use the diameters, radii and angles measured in scans
-    sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
-    landmark_height: float  # With --dem: height of a landmark that must be visible, metres
-    line_of_sight_step: float  # With --dem: metres between terrain samples along a line of sight (formerly sight_step)
     start_sd: float  # Metres by which the start may be off
     start_yaw_sd: float  # Radians by which the heading of the start may be off
 
@@ -446,13 +312,6 @@ class PfSettings(TypedDict, total=False):
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
     use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
     particles: float  # Particles while the pose is known
     search_particles: float  # Particles during global localization
     adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
@@ -530,29 +389,6 @@ class SlamSettings(TypedDict, total=False):
     quality_floor: float  # Smallest quality that the noise of a landmark is divided by; 1 turns quality off
     use_terrain: bool  # With --dem: landmarks that the terrain hides from the sensor are no candidates
     use_identities: bool  # Use the identities of landmarks in the log
-    lost_after: float  # Consecutive sets of sightings without a match before the filter searches
-    search_growth: float  # Growth of the standard deviations per set while searching
-    hypotheses: float  # Largest number of Gaussians
-    min_weight: float  # Weight, relative to the best, below which a Gaussian is dropped (formerly least_weight)
-    merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
-    split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
-    error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
-    expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
-    detection: float  # Probability that a landmark in view is seen
-    view_range: float  # expect_unseen: range of the sensor, metres
-    view_angle: float  # expect_unseen: the sensor's whole field of view, radians
     along_per_metre: float  # Variance forward per metre driven, m^2/m
     across_per_metre: float  # Variance sideways per metre driven, m^2/m
     yaw_per_metre: float  # Variance of yaw per metre driven, rad^2/m
@@ -633,18 +469,6 @@ class UkfSettings(TypedDict, total=False):
     merge: float  # Squared Mahalanobis distance below which two Gaussians are merged
     split_yaw: float  # Standard deviation of yaw, radians, above which a Gaussian is split
     error_correlation_distance: float  # Metres driven until the map error of a landmark not seen meanwhile counts as new; 0: at once (formerly same_error)
-    particles: float  # Particles while the pose is known
-    search_particles: float  # Particles during global localization
-    adaptive: bool  # Use as many particles as their spread needs (KLD sampling)
-    kld_error: float  # Error bound of KLD sampling
-    resample_below: float  # Resample if fewer than this fraction of the particles are effective
-    recovery: bool  # Draw new poses when the likelihood of sightings falls
-    recovery_slow: float  # Decay of the long-term mean likelihood, per set
-    recovery_fast: float  # Decay of the short-term mean likelihood, per set
-    weights: str  # Weights of particles: likelihood, or eqs. 12-14 of the paper
-    temper: float  # Exponent of each likelihood; below 1 if errors of successive sightings are correlated
-    particle_gate: float  # Probability that a right pairing passes
-    unmatched_cost: float  # paper: cost of a sighting without landmark; negative: the gate
     expect_unseen: bool  # likelihood: unseen landmarks in view count against a pose
     detection: float  # Probability that a landmark in view is seen
     view_range: float  # expect_unseen: range of the sensor, metres
@@ -981,10 +805,10 @@ def hazards(map: Any, output: Any, *, progress: Any = ..., dem: Sequence[Any] | 
         vehicle
         polygons: GeoPackage for the layer `hazard`; empty: none
         nav2: map.yaml; empty: none
-        height_sd
-        height_correlation
-        rock_cover: k of the site; < 0: fitted to the map's rocks
-        detection_limit: metres; < 0: fitted to the map's rocks
+        height_sd: metres; NaN: that of the DEM
+        height_correlation: metres
+        rock_cover: k of the site; NaN: fitted to its rocks
+        detection_limit: metres; NaN: fitted to its rocks
         uncertain
         hazard
         landing_ellipse: MAJOR,MINOR[,AZIMUTH] for the band `landing`; empty: none
