@@ -96,9 +96,10 @@ std::function<void(const std::string&)> log_reader(const std::string& format) {
   return [=](const std::string& path) { importers::import_log(path, all_types(), {.format = format}); };
 }
 
-std::function<void(const std::string&)> log_folder_reader(const std::string& format) {
+/// `robot`: of MRCLAM, whose datasets have several; 0: of all others.
+std::function<void(const std::string&)> log_folder_reader(const std::string& format, int robot) {
   return [=](const std::string& path) {
-    importers::import_log(folder_of_file(path), all_types(), {.format = format, .robot = 1});
+    importers::import_log(folder_of_file(path), all_types(), {.format = format, .robot = robot});
   };
 }
 
@@ -176,19 +177,19 @@ std::vector<Reader> all_readers() {
       {"log_toro", "a.graph", log_reader("toro")},
       {"log_mrclam",
        "Robot1_Measurement.dat",
-       log_folder_reader("mrclam"),
+       log_folder_reader("mrclam", 1),
        {{"Barcodes.dat", mrclam_codes},
         {"Robot1_Odometry.dat", mrclam_steps},
         {"Robot1_Groundtruth.dat", mrclam_truth}}},
       {"log_mrclam_odometry",
        "Robot1_Odometry.dat",
-       log_folder_reader("mrclam"),
+       log_folder_reader("mrclam", 1),
        {{"Barcodes.dat", mrclam_codes},
         {"Robot1_Measurement.dat", mrclam_seen},
         {"Robot1_Groundtruth.dat", mrclam_truth}}},
       {"log_victoria_park",
        "LASER.txt",
-       log_folder_reader("victoria-park"),
+       log_folder_reader("victoria-park", 0),
        {{"DRS.txt", "90 0.5 0.01\n110 0.5 0.02\n"}, {"GPS.txt", "95 -33.1 151.2\n105 -33.2 151.3\n"}}},
       {"log_carmen", "drive.log", log_reader("carmen")},
       {"rosbag2", "bag.db3", log_reader("rosbag2")},
