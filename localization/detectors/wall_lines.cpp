@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <limits>
 
 #include "localization/detectors/scan_segments.hpp"
 
@@ -68,7 +70,58 @@ void split_at_farthest(const Hits& hits, const BeamSegment& run, double toleranc
   split_at_farthest(hits, {farthest + 1, run.last}, tolerance, pieces);
 }
 
+/// Returns the line through the hits of two pieces, from their moments.
+WallLine join_walls(const WallLine& a, const WallLine& b) {
+  const auto beams = [](const WallLine& w) { return static_cast<double>(w.last - w.first + 1); };
+  const double n = beams(a) + beams(b);
+  WallLine joined{.first = std::min(a.first, b.first), .last = std::max(a.last, b.last)};
+  joined.centre = (beams(a) * a.centre + beams(b) * b.centre) / n;
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  double variance = 0;
+  for (const WallLine* const w : {&a, &b}) {
+    const double of_hit = beams(*w) * w->centre_variance;  // m^2, of one hit across its line
+    const Eigen::Vector2d off = w->centre - joined.centre;
+    scatter +=
+        beams(*w) * off * off.transpose() + of_hit / w->angle_variance * w->along * w->along.transpose();
+    variance += beams(*w) / n * of_hit;
+  }
+  const double axis = std::atan2(2 * scatter(0, 1), scatter(0, 0) - scatter(1, 1)) / 2;
+  joined.along = {std::cos(axis), std::sin(axis)};
+  if (joined.along.dot(a.along) < 0) joined.along = -joined.along;
+  joined.normal = {-joined.along.y(), joined.along.x()};
+  if (joined.normal.dot(joined.centre) > 0) joined.normal = -joined.normal;
+  joined.begin = std::numeric_limits<double>::infinity(), joined.end = -joined.begin;
+  for (const WallLine* const w : {&a, &b})
+    for (const double end : {w->begin, w->end}) {
+      const double s = joined.along.dot(w->at(end) - joined.centre);
+      joined.begin = std::min(joined.begin, s), joined.end = std::max(joined.end, s);
+    }
+  joined.centre_variance = variance / n;
+  joined.angle_variance = variance / joined.along.dot(scatter * joined.along);
+  return joined;
+}
+
 }  // namespace
+
+std::vector<WallLine> join_collinear(std::vector<WallLine> walls, double max_turn, double max_offset) {
+  const auto longest_first = [&] { std::ranges::stable_sort(walls, std::greater<>{}, &WallLine::length); };
+  longest_first();
+  for (std::size_t i = 0; i < walls.size(); ++i)
+    for (std::size_t j = i + 1; j < walls.size();) {
+      const WallLine &a = walls[i], &b = walls[j];
+      const bool is_one = a.normal.dot(b.normal) > std::cos(max_turn) &&
+                          std::abs(a.normal.dot(b.centre - a.centre)) < max_offset &&
+                          std::abs(b.normal.dot(a.centre - b.centre)) < max_offset + max_turn * a.length();
+      if (!is_one) {
+        ++j;
+        continue;
+      }
+      walls[i] = join_walls(a, b);
+      walls.erase(walls.begin() + static_cast<std::ptrdiff_t>(j));
+    }
+  longest_first();
+  return walls;
+}
 
 std::vector<WallLine> find_wall_lines(const LaserScan& scan, const WallLineOptions& options) {
   const std::vector<double> ranges = bridge_outliers(scan, options.jump);

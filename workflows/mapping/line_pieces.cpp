@@ -5,14 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
+#include <string_view>
 
 #include "localization/identification/map_landmark.hpp"
 
 namespace waymark::workflows {
 namespace {
 
-constexpr double kEndSd = 0.5;  // m of the ends of a seen piece of a line
+constexpr double kEndSd = 0.5;                          // m of the ends of a seen piece of a line
+constexpr double kMinAngleVariance = 1e-8;              // rad^2
+constexpr double kMaxDeviation = 0.1, kMaxTurn = 0.04;  // m, rad: of a piece of a line from it
 
 /// The middle of the seen piece of a line in the frame of the sensor, and the unit vector along it.
 struct LinePiece {
@@ -25,7 +29,8 @@ LinePiece piece_of(const localization::SeenLandmark& s, const localization::Line
   return {-*s.range * normal + (s.extent->from + s.extent->to) / 2 * along, along};
 }
 
-/// Pieces of one line, as its extent from a point on it.
+/// Pieces of one line, as its extent from a point on it. Long pieces count more: normals are weighted by the
+/// inverse variance of their direction.
 struct LineUnion {
   TypeId type;
   Eigen::Vector2d on, sum_of_normals;
@@ -61,8 +66,9 @@ std::optional<LineUnion> line_of(Observation& o, const TypeRegistry& types) {
       !o.features[line->direction].known() || !o.features[line->length].known())
     return std::nullopt;
   const double azimuth = o.features[line->direction].value, half = o.features[line->length].value / 2;
-  return LineUnion{o.type, o.position.xyz.head<2>(), {std::sin(azimuth), std::cos(azimuth)}, -half, half,
-                   {&o}};
+  const Eigen::Vector2d normal(std::sin(azimuth), std::cos(azimuth));
+  const double weight = 1 / std::max(o.features[line->direction].variance, kMinAngleVariance);
+  return LineUnion{o.type, o.position.xyz.head<2>(), weight * normal, -half, half, {&o}};
 }
 
 /// A piece may close the gap between two lines: joins lines until none fits another.
@@ -78,6 +84,64 @@ void join_lines(std::vector<LineUnion>& lines) {
     lines.erase(other);
     i = 0;  // the longer line may now reach one before it
   }
+}
+
+double variance_across(const Observation& o, const Eigen::Vector2d& normal) {
+  return normal.dot(o.covariance.topLeftCorner<2, 2>() * normal);
+}
+
+/// Returns the mean distance of the pieces from the point `on`, across the line.
+double mean_offset(const LineUnion& line) {
+  const Eigen::Vector2d normal = line.normal();
+  double sum = 0, weights = 0;
+  for (const Observation* const o : line.pieces) {
+    const double weight = 1 / std::max(variance_across(*o, normal), 1e-12);
+    sum += weight * normal.dot(o->position.xyz.head<2>() - line.on);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+/// Moves the pieces to the middle of their line. One that deviates a little more than it states, as the leaf
+/// of a door in the wall does, gets the variance of its deviation: it stays an observation of the line, with
+/// little weight. Returns the pieces that fit; others may be of another line beside it.
+std::vector<Observation*> move_to_middle(const LineUnion& line, const localization::LineFeatures& of) {
+  const Eigen::Vector2d normal = line.normal(), along = line.along();
+  const double offset = mean_offset(line), azimuth = std::atan2(normal.x(), normal.y());
+  std::vector<Observation*> fitting;
+  for (Observation* const o : line.pieces) {
+    const Eigen::Vector2d from_on = o->position.xyz.head<2>() - line.on;
+    const double off = normal.dot(from_on) - offset,
+                 turn = localization::wrap_angle(o->features[of.direction].value - azimuth);
+    if (std::abs(off) < kMaxDeviation && std::abs(turn) < kMaxTurn) {
+      o->covariance.topLeftCorner<2, 2>() +=
+          std::max(0.0, off * off - variance_across(*o, normal)) * normal * normal.transpose();
+      o->features[of.direction].variance = std::max(o->features[of.direction].variance, turn * turn);
+      fitting.push_back(o);
+    }
+    o->position.xyz.head<2>() += ((line.from + line.to) / 2 - along.dot(from_on)) * along;
+    o->features[of.length].value = line.to - line.from;
+  }
+  return fitting;
+}
+
+/// Joins two pieces of a line that one look sees, both moved to its middle. The better variances are kept,
+/// since the pose of the look is common to both.
+void join_piece(Observation& a, const Observation& b, const LineUnion& line, std::size_t direction) {
+  const Eigen::Vector2d normal = line.normal();
+  const auto fraction_of_b = [](double of_a, double of_b) { return of_a / std::max(of_a + of_b, 1e-300); };
+  const double across_a = variance_across(a, normal), across_b = variance_across(b, normal);
+  a.position.xyz.head<2>() +=
+      fraction_of_b(across_a, across_b) * normal.dot((b.position.xyz - a.position.xyz).head<2>()) * normal;
+  a.covariance.topLeftCorner<2, 2>() +=
+      (std::min(across_a, across_b) - across_a) * normal * normal.transpose();
+  auto& turned = a.features[direction];
+  const auto& other = b.features[direction];
+  turned.value =
+      localization::wrap_angle(turned.value + fraction_of_b(turned.variance, other.variance) *
+                                                  localization::wrap_angle(other.value - turned.value));
+  turned.variance = std::min(turned.variance, other.variance);
+  a.confidence = std::max(a.confidence, b.confidence);
 }
 
 }  // namespace
@@ -133,13 +197,24 @@ void unite_lines(std::vector<Observation>& observations, const TypeRegistry& typ
       lines.push_back(*piece);
   }
   join_lines(lines);
-  for (const LineUnion& line : lines)
-    for (Observation* const o : line.pieces) {
-      const Eigen::Vector2d at = o->position.xyz.head<2>();
-      o->position.xyz.head<2>() +=
-          ((line.from + line.to) / 2 - line.along().dot(at - line.on)) * line.along();
-      o->features[localization::line_features(types[line.type])->length].value = line.to - line.from;
+  std::vector<char> is_joined(observations.size());
+  for (const LineUnion& line : lines) {
+    const localization::LineFeatures of = *localization::line_features(types[line.type]);
+    std::map<std::string_view, Observation*> of_look;
+    for (Observation* const o : move_to_middle(line, of)) {
+      const auto [first, is_new] = of_look.try_emplace(o->source, o);
+      if (is_new || o->source.empty()) continue;
+      join_piece(*first->second, *o, line, of.direction);
+      is_joined[static_cast<std::size_t>(o - observations.data())] = 1;
     }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < observations.size(); ++i)
+    if (!is_joined[i]) {
+      if (kept != i) observations[kept] = std::move(observations[i]);
+      ++kept;
+    }
+  observations.resize(kept);
 }
 
 void widen_line(Landmark& landmark, const LandmarkType& type) {

@@ -20,6 +20,8 @@ Observation observation_of_line(const localization::SeenLandmark& seen, const Dr
 /// Unites the pieces of each line, so that they are observations of one landmark; other observations stay.
 /// - Pieces are of one line within 0.15 rad and 0.4 m, with gaps of 1.5 m or less, in any order.
 /// - Each is moved along the line to the middle of their union, and gets its length.
+/// - Pieces of one source become one observation. One that deviates by more than it states gets that
+/// variance.
 /// - Cost: pieces times lines.
 void unite_lines(std::vector<Observation>& observations, const TypeRegistry& types);
 

@@ -38,8 +38,8 @@ void register_laser_wall_lines(DetectorTable& detectors) {
                    return [line = line_type(types, "wall")](const LaserScan& scan) {
                      SightingSet set{scan.robot_from_sensor, {}};
                      if (!line) return set;
-                     std::vector<WallLine> walls = find_wall_lines(scan, {.min_length = kMinWall});
-                     std::ranges::stable_sort(walls, std::greater<>{}, &WallLine::length);
+                     std::vector<WallLine> walls =
+                         join_collinear(find_wall_lines(scan, {.min_length = kMinWall}));
                      if (walls.size() > kMaxWalls) walls.resize(kMaxWalls);
                      for (const WallLine& wall : walls)
                        set.sightings.push_back(sighting_of_wall(wall, *line));

@@ -84,6 +84,34 @@ TEST(LinePieces, ObservationsOfPointsStay) {
   EXPECT_EQ(walls.length(all[0]), walls.length(all[2]));
 }
 
+// A look sees a wall on both sides of a door; others see all of it, its leaf, and a shelf 0.3 m before it.
+TEST(LinePieces, OfOneLookAreOneObservationAndDeviationsAreStated) {
+  const Walls walls;
+  std::vector<Observation> all{walls.piece({0, 0}, {4, 0}), walls.piece({5, 0.02}, {9, 0.02}),
+                               walls.piece({0, 0}, {9, 0}), walls.piece({4, -0.05}, {5, -0.08}),
+                               walls.piece({2, 0.3}, {4, 0.3})};
+  const char* sources[] = {"a", "a", "b", "c", "d"};
+  const std::size_t direction = feature_index(walls.types()[all[0].type], "direction");
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    all[i].source = sources[i];
+    all[i].covariance.setZero();
+    all[i].covariance(1, 1) = i == 4 ? 1e-2 : 1e-4;
+    all[i].features[direction].variance = 1e-4 / walls.length(all[i]);
+  }
+  const double shelf_turn = all[4].features[direction].variance;
+  unite_lines(all, walls.types());
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_NEAR(all[0].position.xyz.y(), 0.01, 0.02);  // between both pieces
+  EXPECT_LT(all[0].covariance(1, 1), 5e-4);
+  const Observation &leaf = all[2], &shelf = all[3];
+  EXPECT_EQ(leaf.source, "c");
+  EXPECT_GT(leaf.covariance(1, 1), 0.002);
+  EXPECT_GT(leaf.features[direction].variance, 5e-4);
+  EXPECT_EQ(shelf.source, "d");
+  EXPECT_NEAR(shelf.covariance(1, 1), 1e-2, 1e-9) << "another line, so no deviation of this one";
+  EXPECT_EQ(shelf.features[direction].variance, shelf_turn);
+}
+
 TEST(LinePieces, AMergedLineIsUnknownAlongItself) {
   const Walls walls;
   const Observation one = walls.piece({0, 0}, {12, 0});

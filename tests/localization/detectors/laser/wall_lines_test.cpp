@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "localization/detectors/scan_landmarks.hpp"
+#include "localization/detectors/wall_lines.hpp"
 #include "tests/localization/made_rooms.hpp"
 #include "tests/support/angles.hpp"
 
@@ -77,6 +78,26 @@ TEST(WallLineDetector, TakesTheLongestOfManyWalls) {
   const auto seen = wall_lines_of(scan_walls(walls, {}, 1441));
   ASSERT_EQ(seen.size(), 6u);
   for (const SeenLandmark& s : seen) EXPECT_GT(s.extent->to - s.extent->from, 1.5);
+}
+
+// A wall with two doors is one line; one 0.5 m behind it is another.
+TEST(WallLineDetector, JoinsThePiecesOfOneWall) {
+  std::vector<MadeWall> walls{
+      {{-5, 2}, {-2, 2}}, {{-1, 2}, {1.5, 2}}, {{2.5, 2}, {6, 2}}, {{-2, 2.5}, {2.5, 2.5}}};
+  const LaserScan scan = scan_walls(walls, {}, 1441, 2 * std::numbers::pi, 0.01, 3);
+  const auto pieces = find_wall_lines(scan, {.min_length = 0.5});
+  const auto joined = join_collinear(pieces);
+  ASSERT_GE(pieces.size(), 3u);
+  const WallLine& wall = joined.at(0);
+  EXPECT_NEAR(wall.length(), 11, 0.3);
+  EXPECT_NEAR(wall.normal.y(), -1, 1e-4);
+  EXPECT_NEAR(wall.normal.dot(wall.centre), -2, 0.005);
+  for (const WallLine& piece : pieces) {
+    if (std::abs(piece.centre.y() - 2) > 0.2) continue;
+    EXPECT_LT(wall.angle_variance, piece.angle_variance);
+    EXPECT_LT(wall.centre_variance, piece.centre_variance);
+  }
+  EXPECT_EQ(std::ranges::count_if(joined, [](const WallLine& w) { return w.centre.y() < 2.2; }), 1);
 }
 
 TEST(WallLineDetector, LeavesOutShortPiecesAndMapsWithoutWalls) {
