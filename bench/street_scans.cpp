@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Facades, signs and kerbs in one turn of a 3-D scanner of 64 rows in a made street, and reflectors in a line
-// scan; one core.
+// Facades, signs and kerbs in one turn of a 3-D scanner of 64 rows in a made street, reflectors and walls in
+// a line scan, and pulses of a survey of the street from the air; one core.
 #include <benchmark/benchmark.h>
+
+#include <cmath>
 
 #include "core/random.hpp"
 #include "localization/detectors/cloud_curbs.hpp"
 #include "localization/detectors/cloud_facades.hpp"
 #include "localization/detectors/cloud_signs.hpp"
 #include "localization/detectors/laser_reflectors.hpp"
+#include "localization/detectors/wall_lines.hpp"
 #include "testbed/town/town_scanner.hpp"
+#include "testbed/town/town_survey.hpp"
 
 namespace waymark::bench {
 namespace {
@@ -66,6 +70,36 @@ void FindReflectors(benchmark::State& state) {
   state.counters["found"] = static_cast<double>(found);
 }
 BENCHMARK(FindReflectors)->Unit(benchmark::kMicrosecond);
+
+/// In a corridor of a made hall.
+void FindWallLines(benchmark::State& state) {
+  const testbed::Town hall = testbed::plan_hall({}, 1, 1);
+  Random random(1);
+  localization::LaserScan scan{
+      .robot_from_sensor = {}, .first_angle = -2.356, .angle_step = 0.004363, .ranges = {}, .max_range = 30};
+  const Eigen::Vector2d at = hall.path.at(20);
+  for (int i = 0; i < 1081; ++i) {
+    const double angle = scan.first_angle + i * scan.angle_step;
+    const auto range = hall.cast(at, {std::cos(angle), std::sin(angle)}, 0);
+    scan.ranges.push_back(static_cast<float>(range ? *range + random.normal(0, 0.02) : 0));
+  }
+  std::size_t found = 0;
+  for (auto _ : state)
+    found = localization::join_collinear(localization::find_wall_lines(scan, {.min_length = 1})).size();
+  state.counters["found"] = static_cast<double>(found);
+}
+BENCHMARK(FindWallLines)->Unit(benchmark::kMicrosecond);
+
+void SurveyFromTheAir(benchmark::State& state) {
+  const testbed::StreetModel model{.survey_pulses = 8};
+  const testbed::Town town = testbed::plan_street(model, 1, 1);
+  std::int64_t returns = 0;
+  for (auto _ : state)
+    testbed::survey_town(town, model, 1,
+                         [&](std::span<const testbed::LaserReturn> row) { returns += std::ssize(row); });
+  state.SetItemsProcessed(returns);
+}
+BENCHMARK(SurveyFromTheAir)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace waymark::bench

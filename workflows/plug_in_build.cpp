@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "localization/laser_scan.hpp"
-#include "localization/point_cloud.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "workflows/plug_in.hpp"
 

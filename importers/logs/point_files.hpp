@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 namespace waymark::importers {
 
 /// Reads the points of a 3-D scan, /vsi paths included: KITTI (.bin: little-endian float32 x, y, z,

@@ -4,7 +4,6 @@
 #include "landmarks/landmark_type.hpp"
 #include "localization/detectors/detector_table.hpp"
 #include "localization/laser_scan.hpp"
-#include "localization/point_cloud.hpp"
 #include "localization/sighting.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "workflows/detection/image_detector.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <vector>
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 namespace waymark::localization {
 
 /// Points of a 3-D scan in one cubic cell, as their mean.

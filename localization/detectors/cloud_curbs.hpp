@@ -2,7 +2,7 @@
 #pragma once
 #include <Eigen/Core>
 #include <vector>
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 namespace waymark::localization {
 
 /// Options of the detector of kerbs in 3-D scans.

@@ -2,7 +2,7 @@
 #pragma once
 #include <span>
 #include <vector>
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 namespace waymark::localization {
 
 /// Height of the ground around a 3-D scanner: cells of 1 m about the scanner.

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 #include <vector>
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::localization {
 

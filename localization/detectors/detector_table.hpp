@@ -8,7 +8,6 @@
 #include <vector>
 #include "landmarks/landmark_type.hpp"
 #include "localization/laser_scan.hpp"
-#include "localization/point_cloud.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::localization {
 

@@ -42,10 +42,40 @@ WallLine fit_wall(const Hits& hits, const BeamSegment& run, double beam_sd) {
   return line;
 }
 
-bool fits_line(const Hits& hits, const WallLine& line, double tolerance) {
+double max_deviation(const Hits& hits, const WallLine& line) {
+  double deviation = 0;
   for (std::size_t i = line.first; i <= line.last; ++i)
-    if (!(std::abs(line.normal.dot(hits[i] - line.centre)) <= tolerance)) return false;
-  return true;
+    deviation = std::max(deviation, std::abs(line.normal.dot(hits[i] - line.centre)));
+  return deviation;
+}
+
+// Merges neighbouring pieces of a run while one line fits both. The best fit goes first: the piece between
+// two walls, at their corner, falls to the same one whichever way the scanner turns.
+std::vector<WallLine> merge_neighbours(const Hits& hits, const std::vector<BeamSegment>& pieces,
+                                       double beam_sd, double tolerance) {
+  struct Joint {
+    WallLine line;
+    double deviation;
+  };
+  std::vector<WallLine> lines;
+  std::vector<Joint> joints;  // of each line with the next
+  const auto join = [&](std::size_t i) {
+    const WallLine line = fit_wall(hits, {lines[i].first, lines[i + 1].last}, beam_sd);
+    return Joint{line, max_deviation(hits, line)};
+  };
+  for (const BeamSegment& piece : pieces) lines.push_back(fit_wall(hits, piece, beam_sd));
+  for (std::size_t i = 0; i + 1 < lines.size(); ++i) joints.push_back(join(i));
+  while (!joints.empty()) {
+    const auto best = std::ranges::min_element(joints, {}, &Joint::deviation);
+    if (!(best->deviation <= tolerance)) break;
+    const auto i = static_cast<std::size_t>(best - joints.begin());
+    lines[i] = best->line;
+    lines.erase(lines.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    joints.erase(best);
+    if (i > 0) joints[i - 1] = join(i - 1);
+    if (i < joints.size()) joints[i] = join(i);
+  }
+  return lines;
 }
 
 // Splits at the hit farthest from the chord until all are within the tolerance. That hit, on a corner or
@@ -135,16 +165,7 @@ std::vector<WallLine> find_wall_lines(const LaserScan& scan, const WallLineOptio
     if (!(ranges[run.first] < scan.max_range)) continue;  // no return
     std::vector<BeamSegment> pieces;
     split_at_farthest(hits, run, options.tolerance, pieces);
-    std::vector<WallLine> lines;
-    for (const BeamSegment& piece : pieces) {
-      const BeamSegment both{lines.empty() ? piece.first : lines.back().first, piece.last};
-      const WallLine joined = fit_wall(hits, both, options.beam_sd);
-      if (!lines.empty() && fits_line(hits, joined, options.tolerance))
-        lines.back() = joined;
-      else
-        lines.push_back(fit_wall(hits, piece, options.beam_sd));
-    }
-    for (const WallLine& line : lines)
+    for (const WallLine& line : merge_neighbours(hits, pieces, options.beam_sd, options.tolerance))
       if (line.length() >= options.min_length && line.last - line.first + 1 >= options.min_beams)
         walls.push_back(line);
   }

@@ -32,7 +32,7 @@ struct WallLine {
 
 /// Finds the straight walls of a scan, in the order of the beams: split and merge (Nguyen et al. 2007).
 /// - The beams are cut where ranges jump; each run is split at the hit farthest from its chord.
-/// - Neighbouring pieces of a run are merged while one line fits them.
+/// - Neighbouring pieces of a run are merged while one line fits them, the best fit first.
 /// - Lines are fitted by total least squares; the variances follow from the scatter of the hits.
 /// 10 us per scan of 180 beams.
 std::vector<WallLine> find_wall_lines(const LaserScan& scan, const WallLineOptions& options = {});

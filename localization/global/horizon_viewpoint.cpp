@@ -13,10 +13,10 @@ namespace {
 
 constexpr std::size_t kSectors = kHorizonSectors;
 constexpr double kWidth = 2 * std::numbers::pi / kHorizonSectors;
-constexpr double kModel = 0.004;  // rad: error of cone tracing
-constexpr double kMissed = 0.3;   // probability that a top is not on the horizon of the DEM
-constexpr double kHiddenSlope = 0.3;
-constexpr double kAnywhere = 0.2;  // rad: range of elevations at an unknown position
+constexpr double kModel = 0.004;      // rad: error of cone tracing
+constexpr double kMissed = 0.3;       // probability that a top is not on the horizon of the DEM
+constexpr double kHiddenSlope = 0.3;  // of terrain in a hole above the filled surface, assumed
+constexpr double kAnywhere = 0.2;     // rad: range of elevations at an unknown position
 
 std::optional<HorizonViewpoint> compute_horizons(const TerrainGrid& ground, const Eigen::Vector2d& at,
                                                  double step, const SkylineOptions& options) {

@@ -2,7 +2,7 @@
 #pragma once
 #include <string>
 #include "core/random.hpp"
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 #include "testbed/drive/scanner_model.hpp"
 #include "testbed/town/town.hpp"
 namespace waymark::testbed {

@@ -7,7 +7,7 @@
 #include <random>
 #include <vector>
 
-#include "localization/point_cloud.hpp"
+#include "localization/laser_scan.hpp"
 namespace waymark::test {
 
 /// An upright rectangle; heights above the road, m.

@@ -25,6 +25,16 @@ struct SettingGroups {
   bool unseen = true;  ///< `expect_unseen` and the sensor's view, part of `particles`
   bool scans = true, sight = true;
   bool start = true;  ///< standard deviations of the start
+
+  /// Returns those of a method that matches no sightings: the start alone.
+  static SettingGroups without_matching() {
+    return {.identification = false,
+            .kalman = false,
+            .particles = false,
+            .unseen = false,
+            .scans = false,
+            .sight = false};
+  }
 };
 
 /// Settings that methods share (--set of `waymark localize`).

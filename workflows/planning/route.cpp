@@ -207,7 +207,7 @@ void check_limit(const RouteRequest& request, double start_sd) {
                 "", "raise --limit-sigma, or give the start's --start-sd");
 }
 
-/// The legs from waypoint to waypoint, each of which begins with the belief at the end of the one before.
+/// The legs from waypoint to waypoint. Each begins with the belief at the end of the one before.
 struct LegSequence {
   const RouteRequest& request;
   LegPlanner& planner;

@@ -22,14 +22,7 @@ class Beacons final : public LocalizeMethod {
   }
   bool requires_map() const override { return false; }
   bool updates_map() const override { return true; }
-  SettingGroups groups() const override {
-    return {.identification = false,
-            .kalman = false,
-            .particles = false,
-            .unseen = false,
-            .scans = false,
-            .sight = false};
-  }
+  SettingGroups groups() const override { return SettingGroups::without_matching(); }
   void describe(OptionVisitor& option) override {
     options_.describe(option);
     option(

@@ -9,14 +9,7 @@ class Odometry final : public FilterMethod {
   std::string_view name() const override { return "odometry"; }
   std::string_view summary() const override { return "dead reckoning alone, the baseline of the others"; }
   bool requires_map() const override { return false; }
-  SettingGroups groups() const override {
-    return {.identification = false,
-            .kalman = false,
-            .particles = false,
-            .unseen = false,
-            .scans = false,
-            .sight = false};
-  }
+  SettingGroups groups() const override { return SettingGroups::without_matching(); }
 
   std::unique_ptr<localization::Localizer> make(LocalizeTask& task) const override {
     return std::make_unique<localization::DeadReckoning>(*task.start);

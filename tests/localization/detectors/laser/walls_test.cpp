@@ -114,15 +114,30 @@ RC_GTEST_PROP(WallCorners, AreMirroredWithTheScan, ()) {
   LaserScan scan = scan_walls(kRoom, sensor, 541, 1.5 * std::numbers::pi, 0.01, 3);
   const auto corners = find_wall_corners(find_wall_lines(scan));
   std::ranges::reverse(scan.ranges);
-  const auto mirrored = find_wall_corners(find_wall_lines(scan));
-  // With noise a corner at the limit of a gap may be found from one side only.
-  RC_ASSERT(std::max(mirrored.size(), corners.size()) - std::min(mirrored.size(), corners.size()) <= 1);
-  std::size_t partners = 0;
-  for (const WallCorner& a : corners)
-    partners += std::ranges::any_of(mirrored, [&](const WallCorner& b) {
-      return (Eigen::Vector2d(b.at.x(), -b.at.y()) - a.at).norm() < 0.07;
-    });
-  RC_ASSERT(partners == std::min(mirrored.size(), corners.size()));
+  auto mirrored = find_wall_corners(find_wall_lines(scan));
+  std::ranges::reverse(mirrored);
+  RC_ASSERT(mirrored.size() == corners.size());
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    RC_ASSERT(std::abs(mirrored[i].at.x() - corners[i].at.x()) < 0.05);
+    RC_ASSERT(std::abs(mirrored[i].at.y() + corners[i].at.y()) < 0.05);
+  }
+}
+
+// Positions where the piece between two walls fell to the one that the scanner met first.
+TEST(WallLines, DoNotDependOnTheTurnOfTheScanner) {
+  for (const Pose2& sensor : {Pose2{1.7, 2.9, 0.2}, Pose2{2.4, 2.1, 0.2}}) {
+    LaserScan scan = scan_walls(kRoom, sensor, 541, 1.5 * std::numbers::pi, 0.01, 3);
+    const std::size_t last_beam = scan.ranges.size() - 1;
+    const auto lines = find_wall_lines(scan);
+    std::ranges::reverse(scan.ranges);
+    auto mirrored = find_wall_lines(scan);
+    std::ranges::reverse(mirrored);
+    ASSERT_EQ(mirrored.size(), lines.size());
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+      EXPECT_EQ(mirrored[i].first, last_beam - lines[i].last);
+      EXPECT_EQ(mirrored[i].last, last_beam - lines[i].first);
+    }
+  }
 }
 
 // The slow twin: the line of least squares among all angles.
