@@ -9,9 +9,8 @@ namespace waymark::localization {
 
 /// Terrain heights on a regular grid, with a max pyramid of blocks of 2, 4, 8, ... cells. A distant ray
 /// samples blocks as wide as its sector. 11 bytes per cell.
-/// - Holes are filled from their margins, up to `kMaxGap` cells. Sea without data is no hole: unknown cells
-/// that
-///   reach the edge of the grid stay without terrain.
+/// - Holes are filled from their margins, up to `kMaxGap` cells.
+/// - Sea without data is no hole: unknown cells that reach the edge of the grid stay without terrain.
 class TerrainGrid {
  public:
   /// Samples the terrain in and around a box. Each side is moved outwards by at most `beyond` metres while
