@@ -14,13 +14,18 @@ namespace waymark::pipeline {
 namespace {
 
 constexpr int kManyCraters = 40;   // boulders of one image are fewer
+constexpr int kSomeCraters = 10;   // fewer are no evidence against the shadows of rocks
 constexpr double kClearLead = 3;   // objects by which one direction has to lead
 constexpr double kMinCrater = 16;  // pixels
 
-double count_craters(const Pixels& image, Radians sun_angle) {
+// Smallest crater, and the rock that looks like it under the opposite sun: with its shadow it is about twice
+// as long as wide.
+constexpr double kFineCrater = 8, kFineRock = 4;  // pixels
+
+double count_craters(const Pixels& image, Radians sun_angle, double min_diameter = kMinCrater) {
   double sum = 0;
   for (const Detection& crater : find_craters(image, {.sun_angle = sun_angle,
-                                                     .min_diameter = kMinCrater,
+                                                     .min_diameter = min_diameter,
                                                      .min_confidence = 0.3,
                                                      .second_opinion = false}))
     sum += crater.confidence;
@@ -37,16 +42,35 @@ bool are_boulders(const Pixels& image, Radians angle) {
          boulders + count_craters(image, opposite) - count_craters(image, angle) >= kClearLead;
 }
 
-}  // namespace
+bool are_opposite(Radians a, Radians b) {
+  return std::abs(std::remainder(a.value - b.value, 2 * std::numbers::pi)) > std::numbers::pi / 2;
+}
 
-std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
-  constexpr std::int64_t kSide = 1024;   // a second of work
-  constexpr double kSystematic = 0.035;  // radians, found on 14 synthetic scenes
+// Returns whether rocks lit from `by_rocks` are more than craters lit from the opposite `by_craters`. Each
+// counts beyond what the other direction shows of it.
+bool rocks_explain_more(const Pixels& image, Radians by_rocks, Radians by_craters) {
+  const double rocks = count_rocks(image, by_rocks, kFineRock) - count_rocks(image, by_craters, kFineRock);
+  const double craters =
+      count_craters(image, by_craters, kFineCrater) - count_craters(image, by_rocks, kFineCrater);
+  return rocks > craters;
+}
+
+// Returns the central 1024 x 1024 pixels: a second of work.
+Pixels middle_of(const Pixels& image) {
+  constexpr std::int64_t kSide = 1024;
   const std::int64_t columns = std::min(kSide, image.columns()), rows = std::min(kSide, image.rows());
   const std::int64_t x0 = (image.columns() - columns) / 2, y0 = (image.rows() - rows) / 2;
   Pixels middle(columns, rows);
   for (std::int64_t y = 0; y < rows; ++y)
     for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
+  return middle;
+}
+
+}  // namespace
+
+std::optional<SunAngle> crater_sun_angle(const Pixels& image) {
+  constexpr double kSystematic = 0.035;  // radians, found on 14 synthetic scenes
+  const Pixels middle = middle_of(image);
   const auto seen = estimate_crater_sun_angle(middle);
   if (!seen || !seen->sure) return std::nullopt;
   const double of_mean = seen->sd.value / std::sqrt(std::max(1, seen->craters));
@@ -60,6 +84,30 @@ std::optional<Radians> sun_angle_of_ground(const Pixels& image) {
   const auto craters = crater_sun_angle(image);
   if (const auto seen = estimate_rock_sun_angle(image, craters)) return seen->angle;
   return craters ? std::optional(craters->angle) : std::nullopt;
+}
+
+std::optional<SunAngle> sun_angle_for_craters(const Pixels& image) {
+  const auto seen = estimate_crater_sun_angle(image);
+  if (!seen) return std::nullopt;
+  const SunAngle craters{seen->angle, seen->sd, seen->craters};
+  if (seen->sure && seen->craters >= kManyCraters) return craters;
+  const Pixels middle = middle_of(image);
+  const auto rocks = estimate_rock_sun_angle(middle, crater_sun_angle(middle));
+  if (!rocks || !are_opposite(rocks->angle, craters.angle) ||
+      !rocks_explain_more(middle, rocks->angle, craters.angle))
+    return craters;
+  return SunAngle{rocks->angle, rocks->sd, craters.shadows};
+}
+
+std::optional<SunAngle> sun_angle_for_rocks(const Pixels& image) {
+  const auto rocks = estimate_rock_sun_angle(image, crater_sun_angle(image));
+  if (!rocks) return std::nullopt;
+  const Pixels middle = middle_of(image);
+  const auto seen = estimate_crater_sun_angle(middle);
+  if (!seen || seen->craters < kSomeCraters || !are_opposite(rocks->angle, seen->angle) ||
+      rocks_explain_more(middle, rocks->angle, seen->angle))
+    return rocks;
+  return SunAngle{seen->angle, seen->sd, seen->craters};
 }
 
 std::string unusual_ground_warning(const LightCoherence& seen) {

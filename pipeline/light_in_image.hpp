@@ -18,6 +18,15 @@ std::optional<SunAngle> crater_sun_angle(const Pixels& image);
 /// that of the craters alone; `std::nullopt` if neither is clear.
 std::optional<Radians> sun_angle_of_ground(const Pixels& image);
 
+/// Returns the direction towards the sun that the craters of an image show (estimate_crater_sun_angle), or
+/// the opposite one where rocks show that and are more: boulders are craters under the opposite sun.
+/// `shadows` counts these craters or boulders; `std::nullopt` if fewer than three are visible.
+std::optional<SunAngle> sun_angle_for_craters(const Pixels& image);
+
+/// Returns the direction towards the sun that rocks and craters show together (estimate_rock_sun_angle). It
+/// is the opposite one where ten or more craters show that and are more; `std::nullopt` if it is not clear.
+std::optional<SunAngle> sun_angle_for_rocks(const Pixels& image);
+
 /// Returns the warning about ground on which the detector of rocks cannot be trusted.
 std::string unusual_ground_warning(const LightCoherence& seen);
 

@@ -11,6 +11,7 @@
 #include "pipeline/rocks/spot_context.hpp"
 #include "pipeline/vision/class_prior.hpp"
 #include "pipeline/vision/half_image.hpp"
+#include "pipeline/vision/real_fraction.hpp"
 namespace waymark::pipeline {
 namespace {
 
@@ -65,24 +66,11 @@ LightCoherence light_coherence(const std::vector<ScoredRock>& all, const LightFr
   return seen;
 }
 
-// Shifts the log odds of all candidates so that the sum of their probabilities is `fraction` of what it was.
-void lower_to_fraction(std::vector<ScoredRock>& all, double fraction) {
-  if (!(fraction < 1) || all.empty()) return;
-  std::vector<double> log_odds;
-  double target = 0;
-  for (const ScoredRock& one : all) {
-    const double p = std::clamp(one.confidence, 1e-9, 1 - 1e-9);
-    log_odds.push_back(std::log(p / (1 - p)));
-    target += fraction * p;
-  }
-  double low = -25, high = 0;  // of the shift
-  for (int round = 0; round < 40; ++round) {
-    const double shift = 0.5 * (low + high);
-    double sum = 0;
-    for (const double l : log_odds) sum += 1 / (1 + std::exp(-(l + shift)));
-    (sum > target ? high : low) = shift;
-  }
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = 1 / (1 + std::exp(-(log_odds[i] + high)));
+void lower_confidences(std::vector<ScoredRock>& all, double fraction) {
+  std::vector<double> confidences;
+  for (const ScoredRock& one : all) confidences.push_back(one.confidence);
+  lower_to_fraction(confidences, fraction);
+  for (std::size_t i = 0; i < all.size(); ++i) all[i].confidence = confidences[i];
 }
 
 Detection detection_of(const ScoredRock& judged, const RockSearch& search, const LightFrame& light) {
@@ -270,7 +258,7 @@ RocksFound find_shadow_rocks(const Pixels& image, const RockSearch& search, Radi
   auto [scored, shaded] = score_scales(image, search, sun_angle);
   RocksFound found{
       .rocks = {}, .light = sun_angle, .coherence = light_coherence(scored, light), .shaded = shaded};
-  lower_to_fraction(scored, found.coherence.real_fraction());
+  lower_confidences(scored, found.coherence.real_fraction());
   for (const ScoredRock& judged : scored) {
     const double diameter = 2 * judged.scale * judged.radius();
     if (judged.confidence >= search.min_confidence && diameter >= search.min_diameter &&

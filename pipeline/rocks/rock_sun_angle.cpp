@@ -130,11 +130,15 @@ SunAngle refine(const std::vector<Spot>& spots, double angle) {
 
 }  // namespace
 
-double count_boulders(const Pixels& image, Radians sun_angle) {
+double count_rocks(const Pixels& image, Radians sun_angle, double min_diameter) {
   double sum = 0;
-  for (const Detection& rock : find_shadow_rocks(image, {.min_diameter = kBoulder}, sun_angle).rocks)
+  for (const Detection& rock : find_shadow_rocks(image, {.min_diameter = min_diameter}, sun_angle).rocks)
     sum += rock.confidence;
   return sum;
+}
+
+double count_boulders(const Pixels& image, Radians sun_angle) {
+  return count_rocks(image, sun_angle, kBoulder);
 }
 
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters) {

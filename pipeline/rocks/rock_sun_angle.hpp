@@ -15,8 +15,11 @@ namespace waymark::pipeline {
 /// Uses the central 1000 x 1000 pixels.
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters = {});
 
-/// Returns the number of boulders, rocks of 20 pixels or more, that light from `sun_angle` shows in the
+/// Returns the number of rocks of `min_diameter` pixels or more that light from `sun_angle` shows in the
 /// image: the sum of their confidences.
+double count_rocks(const Pixels& image, Radians sun_angle, double min_diameter);
+
+/// Returns the number of boulders, rocks of 20 pixels or more: count_rocks.
 double count_boulders(const Pixels& image, Radians sun_angle);
 
 }  // namespace waymark::pipeline

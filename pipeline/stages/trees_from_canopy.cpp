@@ -4,6 +4,7 @@
 #include "pipeline/buildings/find_buildings.hpp"
 #include "pipeline/engine/stage.hpp"
 #include "pipeline/forest/crown_table.hpp"
+#include "pipeline/forest/tree_ground.hpp"
 #include "pipeline/forest/tree_observations.hpp"
 #include "pipeline/fusion/association/landmark_codec.hpp"
 
@@ -122,13 +123,20 @@ struct TreesFromCanopy {
         unit.count_in(static_cast<std::int64_t>(trees.size()));
         unit.reject("top on a roof", remove_on_roofs(trees, *canopy, owned));
       }
+      TreeShapes shapes;
       for (const DetectedTree& tree : trees) {
+        if (options.crowns) shapes.add(tree.height, tree.crown_diameter);
         const std::string forest = forest_type(tree, *canopy, options);
         seen.push_back(observation_of(tree, *canopy, types[id], id, table,
                                       options.species.empty() ? forest : options.species,
                                       tree_errors(forest, options.allometry.empty())));
         if (options.crowns) outlines.add(survey, tree);
       }
+      if (shapes.real_fraction() < 1)
+        unit.warn(
+            canopy->name() +
+            ": many trees are too tall or too slender to stand; does it hold heights above ground, and not "
+            "brightness or elevations?");
     }
     unit.count_out(static_cast<std::int64_t>(seen.size()));
     seen.shrink_to_fit();

@@ -10,6 +10,7 @@
 #include "importers/tiling.hpp"
 #include "pipeline/forest/crown_network.hpp"
 #include "pipeline/forest/find_trees.hpp"
+#include "pipeline/forest/tree_ground.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -102,6 +103,23 @@ double crown_width(const pipeline::ColourWindow& image, const pipeline::CanopyCe
   return kMaxCrownDiameter;
 }
 
+bool crown_is_green(const pipeline::ColourWindow& image, const pipeline::CanopyCell& top) {
+  const bool infrared = image.bands.size() > 3;
+  double sum = 0;
+  int count = 0;
+  for (std::int64_t r = top.row - image.cells.row - 1; r <= top.row - image.cells.row + 1; ++r)
+    for (std::int64_t c = top.column - image.cells.column - 1; c <= top.column - image.cells.column + 1;
+         ++c) {
+      if (!image.bands[0].contains(c, r) || std::isnan(image.bands[0](c, r))) continue;
+      const auto band = [&](std::size_t b) { return double(image.bands[b](c, r)); };
+      const double red = band(0), green = band(1), blue = band(2);
+      sum += infrared ? (band(3) - red) / std::max(band(3) + red, 0.04)
+                      : (2 * green - red - blue) / std::max(red + green + blue, 0.06);
+      ++count;
+    }
+  return count > 0 && pipeline::is_vegetation(sum / count, infrared);
+}
+
 std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const pipeline::DenseNetwork& network,
                                          int threads, const pipeline::ProgressMeter::Listener& progress) {
   const CrownCanopy canopy(image, network);
@@ -118,7 +136,8 @@ std::vector<DetectedCrown> detect_crowns(const ColourImage& image, const pipelin
       if (!found.empty()) seen = image.read(pipeline::expand(tiles[i].cells, reach));
       for (const pipeline::DetectedTree& tree : found)
         parts[i].push_back({image.pixel(tree.top.column), image.pixel(tree.top.row),
-                            crown_width(seen, tree.top), calibrated(tree.height)});
+                            crown_width(seen, tree.top), calibrated(tree.height),
+                            crown_is_green(seen, tree.top)});
       meter.add(1);
     });
   });

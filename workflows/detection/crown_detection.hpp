@@ -16,11 +16,16 @@ inline constexpr double kMaxCrownDiameter = 14;  ///< metres
 /// width of the group.
 double crown_width(const pipeline::ColourWindow& image, const pipeline::CanopyCell& top);
 
+/// Returns whether the mean colour of 3 x 3 cells about `top` is that of vegetation, by infrared where the
+/// image has it. `image` covers the cell `top`.
+bool crown_is_green(const pipeline::ColourWindow& image, const pipeline::CanopyCell& top);
+
 /// A crown in a colour image.
 struct DetectedCrown {
   double x = 0, y = 0;    ///< pixels; (0, 0) is the centre of the first
   double diameter = 0;    ///< metres
   double confidence = 0;  ///< calibrated: of detections with 0.7, seven of ten are trees
+  bool green = true;      ///< its middle has the colour of vegetation (is_vegetation)
 };
 
 /// Returns the crowns of an image in row order: local maxima within 3 m of the probability that a network of

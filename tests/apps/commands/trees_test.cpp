@@ -15,6 +15,7 @@ namespace {
 using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 /// Cones every 8 m, 10 to 19 m high, cells of 0.5 m.
@@ -174,6 +175,52 @@ TEST_F(Trees, AreDetectedInAnImageOfHeights) {
   EXPECT_EQ(rows("0"), std::ranges::count(text_of(folder_ / "trees.csv"), '\n'));
   EXPECT_EQ(rows("1"), 1);  // no top is certain
   EXPECT_EQ(waymark({"detect", "trees", chm(), "-o", folder_ / "trees.csv", "--method", "imagery"}).code, 2);
+}
+
+/// Brightness of bare ground of 360 x 240 m: rolling, with dark pits every 27 m.
+MadeDem pits(int bands) {
+  MadeDem picture{
+      .columns = 600, .rows = 400, .bands = bands, .geotransform = {500000, 0.6, 0, 5200000, 0, -0.6}};
+  picture.height = [](int column, int row) {
+    const double x = 0.6 * column, y = 0.6 * row;
+    const double i = std::floor(x / 9), j = std::floor(y / 9);
+    const double away = std::hypot(x - 9 * i - 4.5, y - 9 * j - 4.5);
+    const double pit = std::fmod(3 * i + 5 * j, 3) == 0 ? 70 * std::exp(-away * away / 4) : 0;
+    return std::round(110 + 30 * std::sin(0.13 * x + 0.05 * y) * std::cos(0.11 * y) - pit);
+  };
+  picture.cell_type = GDT_Byte;
+  picture.nodata = 255;
+  return picture;
+}
+
+// Grey pictures of bare ground had trees of 0.99 (one band) and 0.58 (three).
+TEST_F(Trees, AreNotSeenOnBareGround) {
+  for (const int bands : {1, 3}) {
+    const Outcome made = waymark({"detect", "trees", make_dem(folder_ / "pits.tif", pits(bands)), "-o",
+                                  folder_ / "trees.csv", "--min-confidence", "0.5"});
+    ASSERT_EQ(made.code, 0) << made.err;
+    EXPECT_EQ(std::ranges::count(text_of(folder_ / "trees.csv"), '\n'), 1) << bands << " bands";
+    EXPECT_THAT(made.err, bands == 1 ? AllOf(HasSubstr("this band holds no heights above ground"),
+                                             HasSubstr("are taller than 120 m"))
+                                     : AllOf(HasSubstr("supposed crowns have the colour of vegetation"),
+                                             HasSubstr("count as real")));
+  }
+}
+
+TEST_F(Trees, OfAPictureAreDoubted) {
+  const Outcome made = trees({"--chm", make_dem(folder_ / "pits.tif", pits(1))});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.out + made.err, HasSubstr("does it hold heights above ground"));
+  EXPECT_THAT(trees({"--chm", chm()}).err, Not(HasSubstr("does it hold heights above ground")));
+}
+
+TEST_F(Trees, AreNotSeenInElevations) {
+  MadeDem mountains = cones();
+  mountains.height = [](int column, int row) { return 1500 + 3 * std::sin(0.1 * column) + 0.1 * row; };
+  const Outcome made =
+      waymark({"detect", "trees", make_dem(folder_ / "dem.tif", mountains), "-o", folder_ / "trees.csv"});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_THAT(made.err, HasSubstr("but heights of trees above ground are 3 to 120 m"));
 }
 
 TEST_F(Trees, TakeDiametersFromAFittedTable) {

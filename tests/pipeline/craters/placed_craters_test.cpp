@@ -8,6 +8,7 @@
 #include "pipeline/craters/find_craters.hpp"
 #include "tests/pipeline/craters/placed_craters.hpp"
 #include "tests/pipeline/craters/score_circles.hpp"
+#include "tests/support/seed_offset.hpp"
 
 namespace waymark::test {
 using namespace pipeline;
@@ -28,7 +29,7 @@ Outcome search(PlacedScene (*scene_of)(std::uint64_t), std::uint64_t first, std:
   Outcome outcome;
   int hits = 0, false_alarms = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
-    const PlacedScene scene = scene_of(seed);
+    const PlacedScene scene = scene_of(seed + seed_offset());
     std::vector<CraterCandidate> found, truth;
     for (const Detection& d :
          find_craters(scene.image, {.sun_angle = scene.sun_angle, .min_confidence = 0.5}))

@@ -40,13 +40,8 @@ testbed::SiteModel site(double gsd, Random& random) {
   return site;
 }
 
-}  // namespace
-
-BoulderScene boulder_scene(int number) {
-  const auto seed = static_cast<std::uint64_t>(number);
-  Random random(seed, "boulders");
-  const double gsd = random.log_uniform(0.015, 0.06);
-  const testbed::Scene scene = testbed::make_scene(site(gsd, random), seed + 90000);
+BoulderScene view_of(const testbed::SiteModel& model, double gsd, std::uint64_t seed, Random& random) {
+  const testbed::Scene scene = testbed::make_scene(model, seed + 90000);
   const testbed::View view = testbed::map_view(scene, gsd, kPixels, kPixels);
   testbed::Exposure exposure;
   exposure.sun = {Degrees{random.uniform(0, 360)}, Degrees{random.uniform(18, 62)}, Degrees{0.5}};
@@ -66,6 +61,27 @@ BoulderScene boulder_scene(int number) {
   for (const testbed::TrueCrater& crater : scene.craters)
     if (const auto outline = testbed::image_outline(view, crater)) made.craters.push_back(*outline);
   return made;
+}
+
+}  // namespace
+
+BoulderScene boulder_scene(int number) {
+  const auto seed = static_cast<std::uint64_t>(number);
+  Random random(seed, "boulders");
+  const double gsd = random.log_uniform(0.015, 0.06);
+  return view_of(site(gsd, random), gsd, seed, random);
+}
+
+workflows::SyntheticView rock_field(int number) {
+  const auto seed = static_cast<std::uint64_t>(number);
+  Random random(seed, "rock field");
+  const double gsd = random.log_uniform(0.06, 0.25);
+  testbed::SiteModel field = site(gsd, random);
+  field.craters.density = 0;
+  field.rocks.min_diameter = 2 * gsd;
+  field.rocks.max_diameter = 40 * gsd;
+  field.rocks.k = random.log_uniform(0.05, 0.2);
+  return view_of(field, gsd, seed, random).view;
 }
 
 }  // namespace waymark::test

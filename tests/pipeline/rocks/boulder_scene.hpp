@@ -14,4 +14,8 @@ struct BoulderScene {
 };
 BoulderScene boulder_scene(int number);
 
+/// Vertical view of 640 x 640 pixels of ground with hundreds to thousands of rocks of 2 to 40 px by
+/// Golombek's law and without craters. All else is random as in boulder_scene().
+workflows::SyntheticView rock_field(int number);
+
 }  // namespace waymark::test

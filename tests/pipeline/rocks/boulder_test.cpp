@@ -15,6 +15,7 @@
 #include "pipeline/rocks/rock_sun_angle.hpp"
 #include "tests/pipeline/rocks/boulder_scene.hpp"
 #include "tests/support/angles.hpp"
+#include "tests/support/seed_offset.hpp"
 namespace waymark::test {
 using namespace pipeline;
 namespace {
@@ -59,7 +60,7 @@ void count(BoulderCount& sum, const BoulderScene& scene, Radians sun, std::optio
 TEST(Boulders, AreRocksUnderAKnownSun) {
   BoulderCount sum;
   for (int k = 0; k < scene_count(); ++k) {
-    const BoulderScene scene = boulder_scene(8000 + k);
+    const BoulderScene scene = boulder_scene(8000 + k + static_cast<int>(seed_offset()));
     count(sum, scene, Radians{scene.view.sun_angle}, scene.view.elevation);
   }
   std::printf("%d boulders, %d found, %d with a false crater\n", sum.boulders, sum.found, sum.craters);
@@ -72,7 +73,7 @@ TEST(Boulders, AreRocksUnderAnUnknownSun) {
   BoulderCount sum;
   int opposite = 0, unknown = 0;
   for (int k = 0; k < scene_count(); ++k) {
-    const BoulderScene scene = boulder_scene(8000 + k);
+    const BoulderScene scene = boulder_scene(8000 + k + static_cast<int>(seed_offset()));
     const Pixels& pixels = scene.view.image.pixels;
     const auto light = sun_angle_of_ground(pixels);
     if (!light) {
@@ -88,6 +89,28 @@ TEST(Boulders, AreRocksUnderAnUnknownSun) {
   EXPECT_EQ(opposite, 0);
   EXPECT_GE(sum.found, 0.85 * sum.boulders);
   EXPECT_LE(sum.craters, 0.05 * sum.boulders);
+}
+
+// `waymark detect craters` took fields of rocks for craters under the opposite sun.
+TEST(Boulders, ChooseTheLightOfCraters) {
+  int opposite = 0, by_craters_alone = 0, false_craters = 0;
+  for (int k = 0; k < scene_count(); ++k) {
+    const workflows::SyntheticView field = rock_field(8100 + k + static_cast<int>(seed_offset()));
+    const Pixels& pixels = field.image.pixels;
+    const auto is_opposite = [&](Radians angle) {
+      return std::abs(std::remainder(angle.value - field.sun_angle, kFullTurn)) > kFullTurn / 4;
+    };
+    const auto alone = estimate_crater_sun_angle(pixels);
+    if (!alone) continue;
+    by_craters_alone += is_opposite(alone->angle);
+    const auto light = sun_angle_for_craters(pixels);
+    opposite += is_opposite(light->angle);
+    false_craters += static_cast<int>(find_craters(pixels, {.sun_angle = light->angle}).size());
+  }
+  std::printf("%d fields: sun opposite in %d, by craters alone in %d; %d false craters\n", scene_count(),
+              opposite, by_craters_alone, false_craters);
+  EXPECT_LE(opposite, 0.1 * scene_count());
+  EXPECT_GT(by_craters_alone, 2 * opposite);
 }
 
 }  // namespace

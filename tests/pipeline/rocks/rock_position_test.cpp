@@ -10,6 +10,7 @@
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/position_bias.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
+#include "tests/support/seed_offset.hpp"
 namespace waymark::test {
 using namespace pipeline;
 using namespace workflows;
@@ -42,7 +43,7 @@ TEST_P(RockPosition, HasNoBiasAlongTheLight) {
                           .cover = 0.05,
                           .min_diameter = 3,
                           .blur = 0.4 + 0.12 * k,
-                          .seed = static_cast<std::uint64_t>(7200 + k + 10 * GetParam())};
+                          .seed = static_cast<std::uint64_t>(7200 + k + 10 * GetParam()) + seed_offset()};
     const RockImage image = render(scene);
     const Radians sun = to_radians(scene.sun_angle);
     const RockSearch search{.sun_angle = sun, .sun_elevation = to_radians(Degrees{90 - GetParam()})};

@@ -10,6 +10,7 @@
 #include "pipeline/light_in_image.hpp"
 #include "tests/pipeline/rocks/foliage.hpp"
 #include "tests/support/angles.hpp"
+#include "tests/support/seed_offset.hpp"
 #include "workflows/training/rock_views.hpp"
 namespace waymark::test {
 using namespace pipeline;
@@ -19,7 +20,7 @@ namespace {
 TEST(RockSunAngle, IsTheSunsOrUnknownOnUnseenViews) {
   int right = 0, unknown = 0, wrong = 0;
   for (int k = 1020; k < 1040; ++k) {
-    const SyntheticView view = synthetic_view(k);
+    const SyntheticView view = synthetic_view(k + static_cast<int>(seed_offset()));
     const Pixels& pixels = view.image.pixels;
     const auto seen = estimate_rock_sun_angle(pixels, crater_sun_angle(pixels));
     const double off = seen ? std::abs(std::remainder(seen->angle.value - view.sun_angle, kFullTurn)) : 0;

@@ -13,6 +13,7 @@
 #include "pipeline/rocks/find_rocks.hpp"
 #include "pipeline/rocks/rock_training.hpp"
 #include "tests/pipeline/rocks/rock_score.hpp"
+#include "tests/support/seed_offset.hpp"
 #include "workflows/training/rock_views.hpp"
 namespace waymark::test {
 using namespace pipeline;
@@ -26,7 +27,7 @@ void print(const char* title, const RockScore& score) {
 RockScore score_of(RockScene scene, int scenes, RockMethod method = RockMethod::shadow) {
   RockScore score;
   for (int k = 0; k < scenes; ++k) {
-    scene.seed = static_cast<std::uint64_t>(900 + k);
+    scene.seed = static_cast<std::uint64_t>(900 + k) + seed_offset();
     scene.sun_angle = {40.0 + 77 * k};
     const RockImage image = render(scene);
     const double sun = to_radians(scene.sun_angle).value;
@@ -74,7 +75,7 @@ TEST(RockTargets, MadeViews) {
   const int views = more != nullptr ? std::atoi(more) : 6;
   RockScore score, guessed, classic;
   for (int k = 1000; k < 1000 + views; ++k) {
-    const SyntheticView view = synthetic_view(k);
+    const SyntheticView view = synthetic_view(k + static_cast<int>(seed_offset()));
     RockSearch search{.sun_angle = Radians{view.sun_angle}, .sun_elevation = view.elevation};
     score.add(view.image, find_rocks(view.image.pixels, search), view.sun_angle);
     guessed.add(view.image, find_rocks(view.image.pixels, {}), view.sun_angle);
@@ -115,7 +116,7 @@ TEST(RockTargets, ByShapeAndSlope) {
                               .downhill = {50.0 * number},
                               .dunes = 1.2,
                               .craters = 0.15,
-                              .seed = static_cast<std::uint64_t>(700 + number)};
+                              .seed = static_cast<std::uint64_t>(700 + number) + seed_offset()};
         const RockImage image = render(scene);
         const double sun = to_radians(scene.sun_angle).value;
         RockScore score;

@@ -5,6 +5,7 @@
 
 #include "core/text_file.hpp"
 #include "pipeline/craters/relief_verifier.hpp"
+#include "pipeline/light_in_image.hpp"
 #include "workflows/detection/lit_search.hpp"
 
 namespace waymark::workflows {
@@ -26,8 +27,8 @@ struct CraterSettings {
 };
 
 std::optional<Light> crater_light(const Pixels& pixels) {
-  const auto seen = pipeline::estimate_crater_sun_angle(pixels);
-  if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->craters};
+  const auto seen = pipeline::sun_angle_for_craters(pixels);
+  if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
   return {};
 }
 
@@ -52,7 +53,7 @@ DetectResult detect_craters(const DetectionPlan& plan, const CraterSettings& set
       plan,
       {.estimate = crater_light,
        .choose = most_supported,
-       .witness = "craters",
+       .witness = "craters or boulders",
        .unknown_light = "the image does not show where its light comes from: few craters will be found; "
                         "pass --image-sun-angle",
        .make = [search](std::optional<Radians> sun) mutable -> ObjectDetector {

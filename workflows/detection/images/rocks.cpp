@@ -5,7 +5,6 @@
 
 #include "pipeline/light_in_image.hpp"
 #include "pipeline/rocks/find_rocks.hpp"
-#include "pipeline/rocks/rock_sun_angle.hpp"
 #include "workflows/detection/lit_search.hpp"
 
 namespace waymark::workflows {
@@ -14,7 +13,7 @@ namespace {
 constexpr std::int64_t kRockSample = 1000;  // side of the pieces that the light is estimated from, pixels
 
 std::optional<Light> rock_light(const Pixels& pixels) {
-  const auto seen = pipeline::estimate_rock_sun_angle(pixels, pipeline::crater_sun_angle(pixels));
+  const auto seen = pipeline::sun_angle_for_rocks(pixels);
   if (seen) return Light{to_degrees(seen->angle).value, to_degrees(seen->sd).value, seen->shadows};
   return {};
 }

@@ -10,10 +10,13 @@
 #include "core/error.hpp"
 #include "importers/tiling.hpp"
 #include "pipeline/forest/crown_network.hpp"
+#include "pipeline/forest/tree_ground.hpp"
 #include "pipeline/forest/tree_observations.hpp"
+#include "pipeline/vision/real_fraction.hpp"
 #include "workflows/detection/crown_detection.hpp"
 #include "workflows/detection/image_canopy.hpp"
 #include "workflows/detection/image_detector.hpp"
+#include "workflows/detection/search_image.hpp"
 
 namespace waymark::workflows {
 namespace {
@@ -101,18 +104,33 @@ Detection detection_of(const pipeline::DetectedTree& tree, TypeId type, double m
 struct TreeCandidate {
   Detection detection;
   FeatureSet features;
+  bool doubtful = true;  ///< its confidence is lowered where the ground is none that trees stand on
 };
 
-/// Finds tops of a canopy: of heights, or of greenness and darkness in a colour image.
+/// Lowers the confidences of the doubtful trees, so that their sum is `fraction` of what it was.
+void lower_doubtful(std::vector<TreeCandidate>& trees, double fraction) {
+  std::vector<double> confidences;
+  for (const TreeCandidate& one : trees)
+    if (one.doubtful) confidences.push_back(one.detection.confidence);
+  pipeline::lower_to_fraction(confidences, fraction);
+  std::size_t next = 0;
+  for (TreeCandidate& one : trees)
+    if (one.doubtful) one.detection.confidence = confidences[next++];
+}
+
+/// Finds tops of a canopy: of heights, or of greenness and darkness in a colour image. Warns of a band that
+/// holds no heights, and lowers the confidences then.
 std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double metres,
-                                            const std::string& method) {
+                                            const std::string& method, std::vector<std::string>& warnings) {
   const bool imagery = method == "imagery";
   const LandmarkType& tree_type = (*plan.types)[plan.type];
   const auto canopy =
       image_canopy(plan.image->info(), imagery ? CanopySign::greenness : CanopySign::height, metres);
   const pipeline::TreeSearch search = imagery ? imagery_search() : height_search(method);
   std::vector<TreeCandidate> kept;
+  pipeline::TreeShapes shapes;
   for (const pipeline::DetectedTree& tree : search_tiles(*canopy, search, plan.search)) {
+    if (!imagery) shapes.add(tree.height, tree.crown_diameter);
     TreeCandidate one{detection_of(tree, plan.type, metres, imagery), {}};
     one.features =
         pipeline::observation_of(tree, *canopy, tree_type, plan.type, pipeline::built_in_allometry(), "mixed",
@@ -123,19 +141,28 @@ std::vector<TreeCandidate> detect_by_canopy(const DetectionPlan& plan, double me
           one.features[feature_index(tree_type, "diameter")] = {};
     kept.push_back(std::move(one));
   }
+  if (shapes.real_fraction() < 1) {
+    warnings.push_back(pipeline::tree_shapes_warning(shapes));
+    lower_doubtful(kept, shapes.real_fraction());
+  }
   return kept;
 }
 
-/// Finds crowns of a colour image with a trained network.
-std::vector<TreeCandidate> detect_by_network(const DetectionPlan& plan, double metres) {
+/// Finds crowns of a colour image with a trained network. Warns of an image without vegetation, and lowers
+/// the confidences of crowns that are not green then.
+std::vector<TreeCandidate> detect_by_network(const DetectionPlan& plan, double metres,
+                                             std::vector<std::string>& warnings) {
   const ColourImage image(plan.image->info(), metres);
   const LandmarkType& tree_type = (*plan.types)[plan.type];
   const pipeline::DenseNetwork& network =
       image.infrared() ? pipeline::crown_network_infrared() : pipeline::crown_network_colour();
   std::vector<TreeCandidate> kept;
+  pipeline::CrownColours colours;
   for (const DetectedCrown& crown :
        detect_crowns(image, network, plan.search.threads, plan.search.progress)) {
     TreeCandidate one;
+    one.doubtful = !crown.green;
+    if (crown.confidence >= kUsualConfidence) ++(crown.green ? colours.green : colours.other);
     one.detection.type = plan.type;
     const double diameter = crown.diameter / metres;
     one.detection.outline = {crown.x, crown.y, diameter, diameter, 0};
@@ -147,7 +174,24 @@ std::vector<TreeCandidate> detect_by_network(const DetectionPlan& plan, double m
                                                                 std::pow(kCrownError * crown.diameter, 2), 1};
     kept.push_back(std::move(one));
   }
+  if (colours.real_fraction_of_other() < 1) {
+    warnings.push_back(pipeline::crown_colours_warning(colours));
+    lower_doubtful(kept, colours.real_fraction_of_other());
+  }
   return kept;
+}
+
+/// Warns if the pixels of a band without trees are all too high or too low for heights above ground.
+void check_heights(const ImageSource& image, std::vector<std::string>& warnings) {
+  const Brightness seen = measure_brightness(image);
+  if (seen.no_data == seen.pixels) {
+    warnings.push_back("the image has no data");
+  } else if (static_cast<double>(seen.darkest) > pipeline::kTallestTree ||
+             static_cast<double>(seen.brightest) < pipeline::TreeSearch{}.forest.tops.min_height) {
+    warnings.push_back(fmt::format(
+        "its values are {:g} to {:g}, but heights of trees above ground are {:g} to {:g} m", seen.darkest,
+        seen.brightest, pipeline::TreeSearch{}.forest.tops.min_height, pipeline::kTallestTree));
+  }
 }
 
 /// Method `imagery` finds crowns in colour images with a trained network, or as dark green blobs in images
@@ -172,8 +216,9 @@ DetectResult detect_trees(const DetectionPlan& plan) {
   const double metres = pixel_metres(plan, found);
   found.detections = empty_detections(plan);
   std::vector<TreeCandidate> kept = imagery && (bands > 3 || metres >= kFinePixel)
-                                        ? detect_by_network(plan, metres)
-                                        : detect_by_canopy(plan, metres, method);
+                                        ? detect_by_network(plan, metres, found.warnings)
+                                        : detect_by_canopy(plan, metres, method, found.warnings);
+  if (!imagery && kept.empty()) check_heights(*plan.image, found.warnings);
   const double min_confidence = plan.min_confidence.value_or(imagery ? kUsualConfidence : 0);
   std::erase_if(kept, [&](const TreeCandidate& one) {
     const double diameter = one.detection.outline.diameter();
