@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include "localization/filters/explained_fraction.hpp"
+#include "localization/filters/regain_evidence.hpp"
 #include "localization/global/pose_claims.hpp"
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
@@ -24,23 +25,27 @@ namespace waymark::localization {
 /// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
 /// not reliable.
 /// A pose out of odometry's reach needs three answers that agree (PoseClaims).
+///
+/// With a NearPoseFinder a filter that was lost stays so until its pose is proven: by the objects matched
+/// since (RegainEvidence), or by a search of the poses that odometry allows, every third set. While chance
+/// explains its matches, the estimate is the last reliable one, predicted by odometry. Restarts then wait for
+/// that, too.
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
   /// `start_known`: false if `start` only says where the robot may be (pose_anywhere). The filter is then
   /// lost and uses no sighting before the finder is certain.
   RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
-                     ChanceFraction chance = {}, FeatureScales scales = {}, bool start_known = true);
+                     ChanceFraction chance = {}, FeatureScales scales = {}, bool start_known = true,
+                     NearPoseFinder near = {});
 
   void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
   bool fix(const GnssFix& gnss) override { return apply_fix(gnss); }
   bool fix(const HeadingFix& heading) override { return apply_fix(heading); }
-  PoseEstimate estimate() const override {
-    return chance_matches_ || !located_ ? reliable_ : inner_->estimate();
-  }
+  PoseEstimate estimate() const override { return is_reckoned() ? reliable_ : inner_->estimate(); }
   PoseEstimate assumed_estimate() const override {
-    return chance_matches_ || !located_ ? reliable_ : inner_->assumed_estimate();
+    return is_reckoned() ? reliable_ : inner_->assumed_estimate();
   }
   LocalizationStatus status() const override { return lost() ? LocalizationStatus::lost : inner_->status(); }
   int restarts() const { return restarts_; }
@@ -70,10 +75,15 @@ class RelocalizingFilter final : public Localizer {
   }
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
   bool is_explained() const;
+  bool is_reckoned() const { return chance_matches_ || !located_ || by_chance_; }
+  bool fails() const;
+  void judge_matches();
+  bool search_near(const SightingSet& seen);
   bool relocate(const SightingSet& seen);
 
   Factory make_filter_;
   PoseFinder finder_;
+  NearPoseFinder near_;
   ChanceFraction chance_;
   ExplainedFraction explained_;
   std::unique_ptr<Localizer> inner_;
@@ -86,6 +96,10 @@ class RelocalizingFilter final : public Localizer {
   int usual_sets_ = 5;           // sets that count in it; five for the value it begins with
   bool located_ = true;          // false until a filter without a start is found
   bool chance_matches_ = false;  // whether the matches were found to fit by chance
+  bool regained_ = true;         // false from a loss until the sightings prove the pose
+  bool by_chance_ = false;       // whether other poses that odometry allows fit as well
+  RegainEvidence evidence_;
+  int sets_since_search_ = 0, near_searches_ = 0;
   int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
 };
 

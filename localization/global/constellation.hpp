@@ -8,6 +8,7 @@
 #include <vector>
 #include "core/options.hpp"
 #include "localization/global/point_cells.hpp"
+#include "localization/global/pose_finder.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::localization {
@@ -83,6 +84,9 @@ class ConstellationIndex {
   /// Returns the fix next to an expected pose of a planar map, if it is too good for chance in the whole map.
   /// Does not search for other poses.
   std::optional<ConstellationFix> check(const SightingSet& seen, const Pose2& expected) const;
+  /// Returns the pose of a planar map, among those that a prior allows, from which the sightings were made.
+  /// Chance is that of these poses, not of the whole map. 1 to 30 ms.
+  ConstellationAnswer find_near(const SightingSet& seen, const PoseEstimate& prior) const;
 
   std::size_t size() const { return landmarks_.size(); }
   std::size_t triangles() const { return corners_.size(); }

@@ -23,6 +23,10 @@ Eigen::Matrix2d rotation(double yaw) {
   return Eigen::Rotation2Dd(yaw).toRotationMatrix();
 }
 
+double volume_of(const Eigen::Matrix3d& covariance) {
+  return std::pow(2 * std::numbers::pi, 1.5) * std::sqrt(std::max(covariance.determinant(), 1e-300));
+}
+
 std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
   double sd = index_.typical_sd_;
   for (const Seen& s : points_) sd = std::max(sd, s.sd);
@@ -243,10 +247,8 @@ ConstellationFix ConstellationSearch::evaluate_fix(const PoseEstimate& e, const 
   }
   const double chance = chance_of_matches(chances, o_.sigmas * o_.sigmas);
   // Number of distinguishable poses: the volume of all over the volume of one.
-  const double one =
-      std::pow(2 * std::numbers::pi, 1.5) * std::sqrt(std::max(e.covariance.determinant(), 1e-300));
   fix.log_false_alarms =
-      std::log(std::max(chance, 1e-300)) + std::log(std::max(1.0, index_.area_ * 2 * std::numbers::pi / one));
+      std::log(std::max(chance, 1e-300)) + std::log(std::max(1.0, volume_ / volume_of(e.covariance)));
   return fix;
 }
 

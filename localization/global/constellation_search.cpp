@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <numbers>
 #include <set>
 
 namespace waymark::localization {
@@ -33,7 +34,7 @@ Eigen::Vector2d flatten(const TangentPlane& plane, const Eigen::Vector3d& at) {
 }
 
 ConstellationSearch::ConstellationSearch(const ConstellationIndex& index, const SightingSet& seen)
-    : index_(index), o_(index.options_) {
+    : index_(index), o_(index.options_), volume_(index.area_ * 2 * std::numbers::pi) {
   for (std::size_t i = 0; i < seen.sightings.size(); ++i) add(seen, i);
   std::ranges::stable_sort(points_, {}, [](const Seen& s) { return s.range; });
   if (points_.size() > kMaxSightings) points_.resize(kMaxSightings);
@@ -47,7 +48,7 @@ ConstellationAnswer ConstellationSearch::find() {
   if (index_.size() == 0) return {.fix = {}, .reason = "the map is empty", .candidates = {}};
   const std::size_t named = count_named();
   if (named < 2 && points_.size() < static_cast<std::size_t>(o_.min_matches))
-    return {.fix = {}, .reason = "too few sightings with range", .candidates = {}};
+    return {.fix = {}, .reason = kTooFewSightings, .candidates = {}};
   if (named >= 2) guess_by_names();
   if (named < 2) guess_by_triangles();
   if (guesses_.empty()) return {.fix = {}, .reason = "no such constellation in the map", .candidates = {}};

@@ -7,6 +7,9 @@ namespace waymark::localization {
 TangentPlane plane_at(const LandmarkPosition& place);
 /// Returns the rotation from robot coordinates to those of the plane.
 Eigen::Matrix2d rotation(double yaw);
+/// Returns the volume of the poses of a Gaussian, m^2 rad: that of an even distribution as likely at its
+/// middle.
+double volume_of(const Eigen::Matrix3d& covariance);
 /// Maps a point to the plane, at its true distance from the origin.
 Eigen::Vector2d flatten(const TangentPlane& plane, const Eigen::Vector3d& at);
 
@@ -17,6 +20,7 @@ class ConstellationSearch {
   ConstellationSearch(const ConstellationIndex& index, const SightingSet& seen);
   ConstellationAnswer find();
   std::optional<ConstellationFix> check(const Pose2& expected);
+  ConstellationAnswer find_near(const PoseEstimate& prior);
 
  private:
   struct Seen {
@@ -47,6 +51,8 @@ class ConstellationSearch {
              const std::array<std::uint32_t, 3>& landmarks, std::size_t count, double weight);
   void guess_by_names();
   void guess_by_triangles();
+  // By votes of single sightings, for the poses within three standard deviations of a prior.
+  void guess_near(const PoseEstimate& prior);
   void look_up(const std::array<std::size_t, 3>& triple);
   // Corner i is opposite side i, longest first.
   void look_up(const std::array<const Seen*, 3>& c);
@@ -85,6 +91,7 @@ class ConstellationSearch {
   std::size_t count_named() const;
   const ConstellationIndex& index_;
   const ConstellationOptions& o_;
+  double volume_;  // of the poses that are possible, m^2 rad
   std::vector<Seen> points_;
   std::size_t total_ = 0;
   Eigen::Vector2d middle_ = Eigen::Vector2d::Zero();

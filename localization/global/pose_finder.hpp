@@ -16,6 +16,7 @@ struct PoseSearchResult {
   std::string_view reason = {};          ///< why none is accepted
   /// That the first candidate is not the robot's pose; absent for ranges, whose poses are compared by chi2.
   std::optional<double> wrong_probability = {};
+  double log_false_alarms = 0;  ///< ln of the expected number of chance poses as good as the first candidate
 };
 
 /// Returns the probability that the first of distinct poses is wrong; 1 without poses.
@@ -30,6 +31,12 @@ using PoseFinder = std::function<PoseSearchResult(const SightingSet&)>;
 /// better than chance allows anywhere in the map. Costs a thousandth of a search.
 using PoseCheck =
     std::function<std::optional<PoseEstimate>(const SightingSet&, const PoseEstimate& expected)>;
+
+/// Search next to where the robot should be. Chance is that of the poses which the prior allows, so fewer
+/// sightings are proof than in the whole map.
+using NearPoseFinder = std::function<PoseSearchResult(const SightingSet&, const PoseEstimate& prior)>;
+/// Reason of a search that had nothing to compare with the map.
+inline constexpr std::string_view kTooFewSightings = "too few sightings with range";
 
 /// Returns the estimate of a robot that may be anywhere in a box, with any heading: centre, and the variances
 /// of an even distribution plus 1 m^2. An empty box is one of unknown extent: 100 km of standard deviation.

@@ -242,6 +242,14 @@ PoseSearchResult SightingMemory::find(const PoseFinder& finder, const SightingSe
   return found;
 }
 
+PoseSearchResult SightingMemory::find_near(const NearPoseFinder& finder, const SightingSet& seen,
+                                           const PoseEstimate& prior) {
+  RememberedSightings remembered = recall();
+  PoseSearchResult found = finder(add_bearings(std::move(remembered.set), seen), prior);
+  if (found.accepted) found.accepted = predict_pose(*found.accepted, {{}, remembered.robot_covariance});
+  return found;
+}
+
 std::optional<PoseEstimate> SightingMemory::check(const PoseCheck& check, const SightingSet& seen,
                                                   const PoseEstimate& expected) {
   RememberedSightings remembered = recall();

@@ -39,6 +39,8 @@ class SightingMemory {
   /// bearing. Adds the error of the robot in the submap to the poses found; ranges are relative to the robot
   /// itself.
   PoseSearchResult find(const PoseFinder& finder, const SightingSet& seen);
+  PoseSearchResult find_near(const NearPoseFinder& finder, const SightingSet& seen,
+                             const PoseEstimate& prior);
   /// Calls the check in the same way.
   std::optional<PoseEstimate> check(const PoseCheck& check, const SightingSet& seen,
                                     const PoseEstimate& expected);

@@ -85,6 +85,7 @@ void record(std::optional<localization::PoseSearchRecord>& record,
 struct PoseSearch {
   localization::PoseFinder find;
   localization::PoseCheck check;
+  localization::NearPoseFinder near;
 };
 
 PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& search) {
@@ -120,6 +121,18 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
     if (!*known) known->emplace(open_index());
     const auto fix = (*known)->index.check(seen, expected.pose);
     return fix ? std::optional(fix->pose()) : std::nullopt;
+  };
+  const localization::NearPoseFinder near = [known, open_index](const localization::SightingSet& seen,
+                                                                const localization::PoseEstimate& prior) {
+    if (!*known) known->emplace(open_index());
+    const localization::ConstellationAnswer answer = (*known)->index.find_near(seen, prior);
+    localization::PoseSearchResult found;
+    if (answer.fix) found.accepted = answer.fix->pose();
+    for (const localization::ConstellationFix& fix : answer.candidates)
+      found.candidates.push_back(fix.pose());
+    found.reason = answer.reason;
+    if (!answer.candidates.empty()) found.log_false_alarms = answer.candidates[0].log_false_alarms;
+    return found;
   };
   const localization::PoseFinder search_map = [known, open_index, skyline, ground = task.ground,
                                                identities = task.settings.identification.use_identities,
@@ -163,7 +176,7 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
     record(*searched, found);
     return found;
   };
-  return {find, check};
+  return {find, check, near};
 }
 
 }  // namespace
@@ -235,9 +248,11 @@ std::unique_ptr<localization::Localizer> make_kalman_localizer(LocalizeTask& tas
   };
   const localization::PoseEstimate start =
       task.start.value_or(localization::pose_anywhere(task.map.map.bounds));
+  PoseSearch poses = make_pose_search(task, search);
   return std::make_unique<localization::RelocalizingFilter>(
-      start, make, make_pose_finder(task, search), std::move(chance),
-      localization::FeatureScales(task.map.map.types()), task.start.has_value());
+      start, make, std::move(poses.find), std::move(chance),
+      localization::FeatureScales(task.map.map.types()), task.start.has_value(),
+      identification.use_identities ? localization::NearPoseFinder{} : poses.near);
 }
 
 }  // namespace waymark::workflows
