@@ -12,17 +12,6 @@ constexpr double kMinOfUsual = 0.5, kWell = 0.8;
 // Fractions of the sightings explained beyond chance, or of the usual fit where the map lacks most objects.
 constexpr double kByChance = 0.2, kExplained = 0.3, kByChanceOfUsual = 0.4, kExplainedOfUsual = 0.6;
 
-// Returns whether a filter that errs by no more than it states recovers by itself.
-bool is_precise(const PoseEstimate& own) {
-  constexpr double kPrecise = 1, kPreciseYaw = 0.1;  // m, rad: a metre at ten metres, as far as landmarks are
-  return own.covariance(0, 0) + own.covariance(1, 1) < kPrecise * kPrecise &&
-         own.covariance(2, 2) < kPreciseYaw * kPreciseYaw;
-}
-
-std::ptrdiff_t matched_count(const std::vector<Match>& matches) {
-  return std::ranges::count(matches, Verdict::matched, &Match::verdict);
-}
-
 }  // namespace
 
 RelocalizingFilter::RelocalizingFilter(const PoseEstimate& start, Factory factory, PoseFinder finder,
@@ -60,17 +49,8 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
   explained_.clear();
 }
 
-// Returns whether the filter's own pose stands against one found near it that contradicts it. What is
-// remembered has errors in common, which the found pose does not state: the sightings of the set decide.
-bool RelocalizingFilter::stands(const PoseEstimate& found, const SightingSet& seen,
-                                const std::vector<Match>& own) {
-  const PoseEstimate here = inner_->estimate();
-  if (chance_matches_ || !is_precise(here) || are_distinct(found, here) || agree(found, here)) return false;
-  return matched_count(make_filter_(found)->update(seen)) <= matched_count(own);
-}
-
-// Restarts at the finder's pose if it is certain. `own`: the matches of a filter that is located.
-bool RelocalizingFilter::relocate(const SightingSet& seen, const std::vector<Match>& own) {
+// Restarts at the finder's pose if it is certain.
+bool RelocalizingFilter::relocate(const SightingSet& seen) {
   if (++sets_since_query_ < kWait) return false;
   sets_since_query_ = 0;
   PoseSearchResult found = memory_.find(finder_, seen);
@@ -79,12 +59,6 @@ bool RelocalizingFilter::relocate(const SightingSet& seen, const std::vector<Mat
   if (!found.accepted) return false;
   if (located_ && claims_.judge(*found.accepted, reliable_) == PoseClaims::Verdict::open) {
     memory_ = SightingMemory(scales_);
-    return false;
-  }
-  if (located_ && stands(*found.accepted, seen, own)) {
-    fit_ = std::max(fit_, usual_fit_);  // it is where it thinks, whatever hides the landmarks
-    unresolved_sets_ = 0;
-    trust(inner_->estimate());
     return false;
   }
   restart(*found.accepted);
@@ -98,7 +72,7 @@ bool RelocalizingFilter::relocate(const SightingSet& seen, const std::vector<Mat
 
 std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   memory_.add(seen);
-  if (!located_ && !relocate(seen, {})) return std::vector<Match>(seen.sightings.size());
+  if (!located_ && !relocate(seen)) return std::vector<Match>(seen.sightings.size());
   std::vector<Match> matches = inner_->update(seen);
   const double fit = matched_fraction(matches);
   if (fit >= 0) fit_ += kFade * (fit - fit_);
@@ -116,7 +90,7 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
     return matches;
   }
   if (seen.sightings.empty()) return matches;
-  if (relocate(seen, matches)) return inner_->update(seen);
+  if (relocate(seen)) return inner_->update(seen);
   if (++unresolved_sets_ < (chance_matches_ ? 2 : 1) * kRestartInterval) return matches;
   restart(reliable_);
   return inner_->update(seen);

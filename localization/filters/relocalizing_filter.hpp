@@ -23,11 +23,7 @@ namespace waymark::localization {
 /// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
 /// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
 /// not reliable.
-///
-/// Two poses of the finder are not taken at once:
-/// - One less than a metre away that contradicts the filter by both covariances replaces it only if it
-///   explains more of the present sightings. Otherwise it confirms the place.
-/// - One out of odometry's reach needs three answers that agree (PoseClaims).
+/// A pose out of odometry's reach needs three answers that agree (PoseClaims).
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
@@ -74,8 +70,7 @@ class RelocalizingFilter final : public Localizer {
   }
   bool is_informative(const HeadingFix& f) const { return reliable_.covariance(2, 2) > f.sd * f.sd; }
   bool is_explained() const;
-  bool stands(const PoseEstimate& found, const SightingSet& seen, const std::vector<Match>& own);
-  bool relocate(const SightingSet& seen, const std::vector<Match>& own);
+  bool relocate(const SightingSet& seen);
 
   Factory make_filter_;
   PoseFinder finder_;

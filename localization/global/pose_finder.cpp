@@ -31,15 +31,11 @@ double wrong_probability(std::span<const double> log_false_alarms) {
   return std::isfinite(others) ? others / (1 + others) : 1;
 }
 
-bool agree(const PoseEstimate& found, const PoseEstimate& other) {
+bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
   const Eigen::Vector3d d(found.pose.x - other.pose.x, found.pose.y - other.pose.y,
                           wrap_angle(found.pose.yaw - other.pose.yaw));
   const Eigen::Matrix3d both = found.covariance + other.covariance + 1e-9 * Eigen::Matrix3d::Identity();
-  return d.dot(both.inverse() * d) < kElsewhere;
-}
-
-bool are_distinct(const PoseEstimate& found, const PoseEstimate& other) {
-  return (found.pose.at() - other.pose.at()).norm() > kMinElsewhere && !agree(found, other);
+  return d.head<2>().norm() > kMinElsewhere && !(d.dot(both.inverse() * d) < kElsewhere);
 }
 
 }  // namespace waymark::localization

@@ -35,9 +35,6 @@ using PoseCheck =
 /// of an even distribution plus 1 m^2. An empty box is one of unknown extent: 100 km of standard deviation.
 PoseEstimate pose_anywhere(const Eigen::AlignedBox2d& box);
 
-/// Returns whether both covariances explain the difference of two poses, at 99.9 % of chi-square.
-bool agree(const PoseEstimate& found, const PoseEstimate& other);
-
 /// Returns whether a found pose differs from another by more than a metre and more than both covariances
 /// explain.
 bool are_distinct(const PoseEstimate& found, const PoseEstimate& other);

@@ -4,8 +4,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "localization/motion_model.hpp"
 
 namespace waymark::test {
@@ -88,68 +86,6 @@ TEST(RelocalizingFilter, AcceptsThreeAnswersThatAgreeAboutARobotThatWasCarried) 
   drive.drive(5);
   EXPECT_EQ(drive.restarts(), 1);
   EXPECT_NEAR(drive.error(), std::hypot(25, 7), 0.01);
-}
-
-/// Dead reckoning that matches as many of four sightings as `matched` says of its pose.
-class Counting final : public Localizer {
- public:
-  using Matched = std::function<std::size_t(const Pose2&)>;
-  Counting(const PoseEstimate& at, Matched matched) : at_(at), matched_(std::move(matched)) {}
-  void predict(const BodyMotion& motion) override { at_ = predict_pose(at_, motion); }
-  std::vector<Match> update(const SightingSet& seen) override {
-    std::vector<Match> matches(seen.sightings.size());
-    for (std::size_t i = 0; i < matches.size(); ++i)
-      matches[i].verdict = i < matched_(at_.pose) ? Verdict::matched : Verdict::too_far;
-    return matches;
-  }
-  PoseEstimate estimate() const override { return at_; }
-  LocalizationStatus status() const override { return LocalizationStatus::tracking; }
-
- private:
-  PoseEstimate at_;
-  Matched matched_;
-};
-
-/// A robot that stands at the origin. For thirty sets its filter matches all sightings, then as `matched`
-/// says. The finder answers with one pose, precise to a centimetre as the filter's own.
-RelocalizingFilter stand(double own_x, double found_x, const Counting::Matched& matched) {
-  const auto precise = [](double x) {
-    return PoseEstimate{{x, 0, 0}, Eigen::Vector3d(1e-4, 1e-4, 1e-6).asDiagonal()};
-  };
-  const auto sets = std::make_shared<int>(0);
-  RelocalizingFilter filter(
-      precise(own_x),
-      [=](const PoseEstimate& from) {
-        return std::make_unique<Counting>(
-            from, [=](const Pose2& at) { return *sets <= 30 ? std::size_t{4} : matched(at); });
-      },
-      [=](const SightingSet&) {
-        PoseSearchResult found;
-        found.accepted = precise(found_x);
-        return found;
-      });
-  SightingSet seen;
-  for (int i = 0; i < 4; ++i) {
-    SeenLandmark s;
-    s.range = 5, s.range_sd = 0.1, s.bearing = 0.4 * i, s.bearing_sd = 0.01;
-    seen.sightings.push_back(s);
-  }
-  for (; *sets < 60; ++*sets) filter.update(seen);
-  return filter;
-}
-
-// What is remembered has errors in common, so a pose from it may be wrong by more than it states.
-TEST(RelocalizingFilter, KeepsItsPoseWhereOneNearbyExplainsNoMore) {
-  const RelocalizingFilter filter = stand(0, 0.3, [](const Pose2&) { return 1; });
-  EXPECT_EQ(filter.restarts(), 0);
-  EXPECT_NEAR(filter.estimate().pose.x, 0, 1e-9);
-}
-
-TEST(RelocalizingFilter, TakesAPoseNearbyThatExplainsMore) {
-  const RelocalizingFilter filter =
-      stand(0.3, 0, [](const Pose2& at) { return std::abs(at.x) < 0.1 ? 3 : 1; });
-  EXPECT_EQ(filter.restarts(), 1);
-  EXPECT_NEAR(filter.estimate().pose.x, 0, 1e-9);
 }
 
 }  // namespace
