@@ -24,6 +24,7 @@ struct PossibleType {
 /// sensor on it. Positive is to the left of the normal that points to the sensor.
 struct LineExtent {
   double from = 0, to = 0;
+  double centre = 0;  ///< m, of the hits: a turn of the line about it does not change their distances
 };
 
 /// A sighting of one landmark: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to

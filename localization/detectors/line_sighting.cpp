@@ -19,7 +19,7 @@ SeenLandmark sighting_of_line(const SeenLine& line, const LineType& type, double
   s.type = type.type;
   s.range = -line.normal.dot(line.centre);
   s.range_sd = std::sqrt(line.centre_variance + middle * middle * line.angle_variance);
-  s.extent = {middle + line.begin, middle + line.end};
+  s.extent = {middle + line.begin, middle + line.end, middle};
   s.features.value[type.direction] = std::atan2(line.normal.y(), line.normal.x());
   s.features.variance[type.direction] = line.angle_variance;
   s.confidence = confidence;

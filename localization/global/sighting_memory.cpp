@@ -7,6 +7,7 @@
 #include <span>
 #include <tuple>
 
+#include "core/covariance.hpp"
 #include "localization/filters/measurement.hpp"
 #include "localization/slam/signature.hpp"
 
@@ -60,6 +61,13 @@ Eigen::MatrixXd free_network(const Eigen::MatrixXd& covariance, const Pose2& rob
   return keep * covariance * keep.transpose();
 }
 
+// Corrections of lasting errors of the odometry leave covariances that are not positive; the submap's would
+// not be, either, and turn it.
+BodyMotion with_positive_covariance(BodyMotion motion) {
+  motion.covariance = positive_part((motion.covariance + motion.covariance.transpose()) / 2);
+  return motion;
+}
+
 bool is_usable(const SeenLandmark& s) {
   return s.is_valid() && s.has_position() && s.type != kNoSuchType;
 }
@@ -106,7 +114,7 @@ std::vector<SightingMemory::Candidate> SightingMemory::candidates(const Sighting
 
 void SightingMemory::integrate(const BodyMotion& motion, const SightingSet& set) {
   if (!state_) state_.emplace(PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-12});
-  state_->predict(motion);
+  state_->predict(with_positive_covariance(motion));
   SightingSet seen = set;
   for (SeenLandmark& s : seen.sightings) {
     if (s.type)  // angles are kept as azimuths of the memory's frame
@@ -184,7 +192,7 @@ RememberedSightings SightingMemory::recall(std::size_t max_count) {
   RememberedSightings result;
   if (!state_) return result;
   SlamState now = *state_;
-  now.predict(motion_);
+  now.predict(with_positive_covariance(motion_));
   std::vector<SlamState::Slot> slots;
   std::vector<Eigen::Index> rows{0, 1, 2};
   const std::vector<SlamState::Slot> chosen = nearest_objects(now, max_count);

@@ -23,6 +23,7 @@ FeatureScales::FeatureScales(const TypeRegistry& types) {
         weights[i].typical = std::sqrt(f.max_value * (f.min_value > 0 ? f.min_value : 1e-3 * f.max_value));
     }
     reaches_.push_back(type.identification_reach);
+    lines_.push_back(line_features(type));
   }
 }
 

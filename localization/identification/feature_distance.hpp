@@ -7,6 +7,7 @@
 #include "landmarks/landmark_type.hpp"
 #include "localization/absolute_fix.hpp"
 #include "localization/identification/known_features.hpp"
+#include "localization/identification/map_landmark.hpp"
 namespace waymark::localization {
 
 /// Scale of each feature, by TypeId and index of the feature, and identification reach of each type.
@@ -33,6 +34,11 @@ class FeatureScales {
   /// type with a far reach does not make all landmarks candidates; 100 m for an empty registry.
   double identification_reach(std::optional<TypeId> type) const;
 
+  /// Returns the features of a type whose landmarks are lines; `std::nullopt` for other types.
+  std::optional<LineFeatures> line(TypeId type) const {
+    return type < lines_.size() ? lines_[type] : std::nullopt;
+  }
+
   /// Returns alpha_f of eq. 11, which is the same for all landmarks of a type. Unless it was set, one over
   /// the feature's reference, or over `tolerance` times the geometric mean of its plausible range.
   double alpha(TypeId type, std::size_t feature, double tolerance) const;
@@ -47,6 +53,7 @@ class FeatureScales {
   };
   std::vector<std::array<Scale, kMaxFeatures>> scales_;
   std::vector<double> reaches_;
+  std::vector<std::optional<LineFeatures>> lines_;
   std::vector<std::array<Weight, kMaxFeatures>> weights_;
 };
 

@@ -14,6 +14,23 @@ namespace {
 constexpr double kRangeMargin =
     10;                             // m beyond the range of sightings in which landmarks are still considered
 constexpr double kCertainty = 0.9;  // of a pair with a landmark of the map: it is not revised
+constexpr double kLineGap = 1.5;    // m, a door: pieces of a line on both sides are of one landmark
+
+// Makes a landmark of a map of a line, whose samples become azimuths.
+void state_as_position(SlamLandmark& landmark) {
+  const SlamLine& line = *landmark.line;
+  const LinePosition position = line_position(line, landmark.at, landmark.covariance);
+  landmark.at = position.at, landmark.covariance = position.covariance;
+  const double length = line.to - line.from;
+  for (KnownFeatures& sample : landmark.feature_samples) {
+    sample.value[line.direction] = wrap_angle(position.azimuth - sample.value[line.direction]);
+    sample.value[line.length] = length;
+  }
+  if (landmark.was_mapped) return;
+  landmark.features.value[line.direction] = position.azimuth;
+  landmark.features.variance[line.direction] = position.azimuth_variance;
+  landmark.features.value[line.length] = length;
+}
 
 }  // namespace
 
@@ -36,8 +53,6 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
   }
   for (const MapLandmark& known : map_.landmarks()) {
     SlamLandmark l;
-    l.at = known.at;
-    l.covariance = known.covariance;
     l.quality = options_.identification.quality_floor < 1 ? known.quality : 1;
     l.log_odds = log_odds(l.quality);
     l.noise_divisor = noise_divisor(known, options_.identification);
@@ -45,9 +60,23 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
     l.was_mapped = true;
     l.type = known.type;
     l.features = known.features;
+    set_as_mapped(l, known);
     landmark_by_key_.emplace(known.key, landmarks_.size());
     landmarks_.push_back(std::move(l));
   }
+}
+
+// Sets position and covariance to those of the map.
+void EkfSlam::set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) const {
+  landmark.at = known.at, landmark.covariance = known.covariance;
+  const auto features = scales_.line(known.type);
+  if (!features || !known.is_line()) return;
+  constexpr double kMinTurnVariance = 1e-6;  // rad^2: a map may state none
+  landmark.line = slam_line(known, *features);
+  landmark.at = Eigen::Vector2d::Zero();
+  landmark.covariance = Eigen::Vector2d(known.normal.dot(known.covariance * known.normal),
+                                        std::max(known.normal_variance, kMinTurnVariance))
+                            .asDiagonal();
 }
 
 void EkfSlam::predict(const BodyMotion& motion) {
@@ -69,7 +98,7 @@ PoseEstimate EkfSlam::estimate() const {
 
 Eigen::Vector2d EkfSlam::position(std::size_t landmark) const {
   const SlamLandmark& l = landmarks_[landmark];
-  return l.slot ? state_.at(*l.slot) : l.at;
+  return l.line ? l.line->anchor : l.slot ? state_.at(*l.slot) : l.at;
 }
 
 void EkfSlam::apply_pending_motion() {
@@ -91,7 +120,7 @@ void EkfSlam::focus() {
 // shown: every active landmark costs time.
 double EkfSlam::reach() const {
   const double seen = sees_bearings_ ? options_.max_range : std::min(options_.max_range, reach_);
-  return std::max(seen, heard_) + kRangeMargin;
+  return std::max({seen, heard_, line_reach_}) + kRangeMargin;
 }
 
 // Returns active landmarks, and those of the map nearby that were not seen yet.
@@ -100,17 +129,31 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
   const Eigen::Matrix3d robot = state_.covariance();
   const double reach = this->reach();
   std::vector<SlamCandidate> near;
+  const double line_slack =
+      kLineGap + 3 * (largest_sd(robot.topLeftCorner<2, 2>()) +
+                      std::min(std::sqrt(std::max(0.0, robot(2, 2))), 1.0) * line_reach_);
   const auto look_at = [&](std::size_t l) {
     const SlamLandmark& landmark = landmarks_[l];
     const Eigen::Vector2d to = position(l) - sensor.at();
     const double range = to.norm();
-    if (range > reach) return;
+    std::optional<LineExtent> extent;
+    ExpectedSighting e;
+    if (landmark.line) {
+      const Eigen::Vector2d state = landmark.slot ? state_.at(*landmark.slot) : landmark.at;
+      e = expect(state_.pose(), seen.robot_from_sensor, *landmark.line, state);
+      extent = extent_from_foot(*landmark.line, state, sensor.at());
+      if (std::hypot(e.value[0], std::max({0.0, extent->from, -extent->to})) > reach) return;
+      extent->from -= line_slack, extent->to += line_slack;
+    } else if (range > reach) {
+      return;
+    } else {
+      e = expect(state_.pose(), seen.robot_from_sensor, position(l));
+    }
     const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
     // Expects detections only within the range and view that the sensor has shown.
-    const bool expected = range < 0.7 * std::min(options_.max_range, reach_) &&
+    const bool expected = !landmark.line && range < 0.7 * std::min(options_.max_range, reach_) &&
                           std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
                           (!visible_ || visible_(sensor, position(l)));
-    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, position(l));
     Eigen::Matrix2d covariance = e.by_pose * robot * e.by_pose.transpose();
     if (landmark.slot) {
       const Eigen::Matrix2d both = e.by_landmark * state_.cross(*landmark.slot) * e.by_pose.transpose();
@@ -118,10 +161,10 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
     }
     covariance += e.by_landmark * (landmark.slot ? state_.covariance(*landmark.slot) : landmark.covariance) *
                   e.by_landmark.transpose();
-    near.push_back({l, expected, e, covariance});
+    near.push_back({l, expected, e, covariance, extent});
   };
   for (const SlamState::Slot slot : state_.active()) look_at(landmark_by_slot_[slot]);
-  map_.near(sensor.at(), reach, [&](std::uint32_t i) {
+  map_.near(sensor.at(), reach + map_.max_half_length(), [&](std::uint32_t i) {
     if (!landmarks_[i].slot && !landmarks_[i].gone) look_at(i);
   });
   return near;
@@ -133,7 +176,8 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
   if (!matcher_) return keys;
   const auto add = [&](const std::vector<Match>& matches) {
     for (std::size_t k = 0; k < keys.size(); ++k)
-      if (!keys[k] && matches[k].verdict == Verdict::matched && matches[k].probability >= kCertainty)
+      if (!keys[k] && matches[k].verdict == Verdict::matched &&
+          certainty_of(seen.sightings[k], matches[k].probability, matches[k].unmapped) >= kCertainty)
         keys[k] = matches[k].key;
   };
   const PoseEstimate robot{state_.pose(), state_.covariance()};
@@ -160,7 +204,10 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
 void EkfSlam::note_reach(const SightingSet& seen) {
   for (const SeenLandmark& s : seen.sightings) {
     if (!is_usable(s, options_)) continue;
-    if (!s.range)
+    if (s.extent)
+      line_reach_ = std::max(
+          line_reach_, std::hypot(*s.range, std::max(std::abs(s.extent->from), std::abs(s.extent->to))));
+    else if (!s.range)
       sees_bearings_ = true;
     else if (!s.bearing)
       heard_ = std::max(heard_, *s.range);
@@ -170,9 +217,10 @@ void EkfSlam::note_reach(const SightingSet& seen) {
 }
 
 // Returns the sightings with directions turned into the map: signatures of landmarks are those of a map.
+// Those of lines stay: they are measurements.
 SightingSet EkfSlam::with_features_in_map(SightingSet seen) const {
   for (SeenLandmark& s : seen.sightings)
-    if (s.type)
+    if (s.type && !s.extent)
       s.features = features_in_map(scales_, *s.type, s.features,
                                    state_.pose().yaw + seen.robot_from_sensor.yaw, state_.covariance()(2, 2));
   return seen;
@@ -202,8 +250,17 @@ SlamState::Correction EkfSlam::correction(const SightingSet& seen, const SlamPai
   const SeenLandmark& s = seen.sightings[pair.sighting];
   if (!l.slot) {
     l.slot = state_.add(l.at, l.covariance);
+    if (l.line) state_.set_site(*l.slot, l.line->anchor, std::max(-l.line->from, l.line->to));
     landmark_by_slot_.resize(*l.slot + 1);
     landmark_by_slot_[*l.slot] = pair.landmark;
+  }
+  if (l.line) {
+    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, *l.line, state_.at(*l.slot));
+    return {.slot = *l.slot,
+            .innovation = line_innovation(s, *l.line, e.value),
+            .by_pose = e.by_pose,
+            .by_landmark = e.by_landmark,
+            .noise = line_noise(s, *l.line) / l.noise_divisor};
   }
   const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, state_.at(*l.slot));
   SlamState::Correction c{.slot = *l.slot,
@@ -228,9 +285,16 @@ void EkfSlam::match(const SightingSet& seen, std::vector<SlamPair> pairs, std::v
     m.verdict = Verdict::matched;
     m.key = l.key.value_or(p.landmark + 1);
     m.pairing.squares = p.squares;
-    if (l.was_mapped) m.at = l.at, m.covariance = l.covariance;
+    if (l.was_mapped && l.line)
+      m.at = map_[p.landmark].at, m.covariance = map_[p.landmark].covariance;
+    else if (l.was_mapped)
+      m.at = l.at, m.covariance = l.covariance;
     l.log_odds = std::min(l.log_odds + options_.seen, kSurestLogOdds);
     ++l.matches;
+    if (l.line) {
+      see_piece(l, s, state_.pose() * seen.robot_from_sensor);
+      continue;
+    }
     if (!l.type) l.type = s.type;
     if (const KnownFeatures* const features = l.type ? s.features_as(*l.type) : nullptr) {
       merge_signature(scales_, *l.type, l.features, *features, options_.feature_tolerance);
@@ -244,11 +308,18 @@ void EkfSlam::match(const SightingSet& seen, std::vector<SlamPair> pairs, std::v
 void EkfSlam::add_new(const SightingSet& seen, std::span<const SlamComparison> comparisons,
                       std::vector<Match>& matches) {
   std::vector<std::size_t> new_bearings;
+  bool line_starts = false;
+  const auto continues_line = [&](std::size_t k) {
+    return compare_with_landmarks(seen.sightings, landmarks_in_reach(seen), landmarks_,
+                                  std::vector<std::optional<LandmarkKey>>(matches.size()), scales_, options_)
+               .comparisons[k]
+               .min_squares <= options_.fresh;
+  };
   for (std::size_t k = 0; k < matches.size(); ++k) {
     const SeenLandmark& s = seen.sightings[k];
     Verdict& verdict = matches[k].verdict;
     if (verdict == Verdict::matched) continue;
-    const bool is_named = is_identified(s, options_);
+    const bool is_named = is_identified(s, options_) && !s.extent;
     const SlamComparison& c = comparisons[k];
     const bool is_new =
         is_named ? !landmark_by_key_.contains(*s.identity)
@@ -261,8 +332,11 @@ void EkfSlam::add_new(const SightingSet& seen, std::span<const SlamComparison> c
       verdict = Verdict::too_far;
     } else if (!is_new) {
       verdict = is_named ? Verdict::too_far : Verdict::ambiguous;
-    } else if (s.has_position()) {
-      add(s, seen.robot_from_sensor);
+    } else if (s.extent && line_starts && continues_line(k)) {
+      verdict = Verdict::ambiguous;  // it will match the line that another piece of it started
+    } else if (s.has_position() || s.extent) {
+      line_starts = line_starts || s.extent;
+      s.extent ? add_line(s, seen.robot_from_sensor) : add(s, seen.robot_from_sensor);
       last_[k] = landmarks_.size() - 1;
       verdict = c.features_differ ? Verdict::features_differ : Verdict::nothing_near;
     } else {  // its position is not known yet
@@ -289,6 +363,36 @@ void EkfSlam::add(const SeenLandmark& seen, const Pose2& mount) {
   const Eigen::Matrix2d back = e.by_landmark.inverse();
   fresh.slot = state_.add(fresh.at, -back * e.by_pose, back * sensor_noise(seen) * back.transpose());
   append(std::move(fresh), seen);
+}
+
+void EkfSlam::add_line(const SeenLandmark& seen, const Pose2& mount) {
+  const Pose2 sensor = state_.pose() * mount;
+  SlamLandmark fresh;
+  fresh.line = slam_line(seen, sensor, *scales_.line(*seen.type));
+  const ExpectedSighting e = expect(state_.pose(), mount, *fresh.line, fresh.at);
+  const Eigen::Matrix2d back = e.by_landmark.inverse();
+  fresh.slot =
+      state_.add(fresh.at, -back * e.by_pose, back * line_noise(seen, *fresh.line) * back.transpose());
+  fresh.type = seen.type;
+  fresh.matches = fresh.expected = 1;
+  see_piece(fresh, seen, sensor);
+  landmark_by_slot_.resize(*fresh.slot + 1);
+  landmark_by_slot_[*fresh.slot] = landmarks_.size();
+  landmarks_.push_back(std::move(fresh));
+}
+
+// Extends a line by a piece. Its samples are deviations from the line, whose direction is an unknown. A line
+// of the map keeps its ends.
+void EkfSlam::see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor) {
+  SlamLine& line = *landmark.line;
+  const Eigen::Vector2d state = state_.at(*landmark.slot);
+  if (!landmark.was_mapped) extend(line, state, *seen.extent, sensor.at());
+  state_.set_site(*landmark.slot, line.anchor, std::max(-line.from, line.to));
+  if (landmark.feature_samples.size() >= 100) return;
+  KnownFeatures sample = seen.features;
+  const double expected = std::atan2(line.normal.y(), line.normal.x()) + state[1] - sensor.yaw;
+  sample.value[line.direction] = wrap_angle(seen.features.value[line.direction] - expected);
+  landmark.feature_samples.push_back(sample);
 }
 
 void EkfSlam::add(const BearingStarts::Start& start, const SightingSet& seen) {
@@ -354,6 +458,8 @@ std::vector<SlamLandmark> EkfSlam::landmarks() {
     all.back().at = state_.at(*all.back().slot);
     all.back().covariance = state_.covariance(*all.back().slot);
   }
+  for (SlamLandmark& l : all)
+    if (l.line) state_as_position(l);
   return all;
 }
 

@@ -28,6 +28,9 @@ namespace waymark::localization {
 ///   band of ambiguity prevents duplicates. The pairs of a set must agree with each other (joint
 ///   compatibility, Neira & Tardos 2001): each may pass its gate by an error of the pose that others exclude.
 /// - Bearings without a range start a landmark once they have been seen from two sides (BearingStarts).
+/// - Lines, such as walls, have two numbers as well: distance and direction of the normal (SlamLine). Pieces
+///   of one line with gaps of 1.5 m or less are one landmark. Sightings add to its existence, nothing
+///   subtracts.
 /// - Ranges without a bearing correct by known landmarks and start none.
 /// - A pair with a landmark of the map must also be certain (0.9) among all others and an object that the
 ///   map lacks (LandmarkMatcher): after a gap several landmarks are inside the gate. Where it is not, a sum
@@ -87,6 +90,9 @@ class EkfSlam final : public Localizer {
   void add_new(const SightingSet& seen, std::span<const SlamComparison> comparisons,
                std::vector<Match>& matches);
   void add(const SeenLandmark& seen, const Pose2& mount);
+  void set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) const;
+  void add_line(const SeenLandmark& seen, const Pose2& mount);
+  void see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor);
   void add(const BearingStarts::Start& start, const SightingSet& seen);
   void append(SlamLandmark fresh, const SeenLandmark& seen);
   void update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found);
@@ -112,6 +118,7 @@ class EkfSlam final : public Localizer {
   double focused_ = std::numeric_limits<double>::infinity();  ///< m about `centre_`: all in it is active
   double reach_ = 0, view_ = 0;                               ///< largest range and bearing seen so far
   double heard_ = 0;                                          ///< m, largest range without bearing
+  double line_reach_ = 0;                                     ///< m, to the farther end of a line
   bool sees_bearings_ = false;                                ///< a sighting had no range
   BearingStarts starts_;
   double hits_ = 0, chances_ = 0;

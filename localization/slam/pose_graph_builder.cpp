@@ -55,8 +55,8 @@ std::vector<Match> PoseGraphBuilder::update(const SightingSet& seen) {
     return matches;
   }
   for (std::size_t k = 0; k < matches.size(); ++k) {
-    if (!slam_.last()[k]) continue;
     const SeenLandmark& s = seen.sightings[k];
+    if (!slam_.last()[k] || s.extent) continue;  // landmarks of a graph are points
     SightingEdge e;
     e.pose = pose;
     e.landmark = *slam_.last()[k];

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/slam/slam_association.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -33,13 +34,24 @@ bool may_be_shown(const SeenLandmark& seen, const SlamLandmark& landmark, const 
 }
 
 int measured_rows(const SeenLandmark& seen) {
-  return seen.has_position() ? 2 : 1;
+  return seen.has_position() || seen.extent ? 2 : 1;
+}
+
+// Returns the squared Mahalanobis distance of a sighted line; `std::nullopt` if it lies beside the landmark
+// or is of another type.
+std::optional<double> line_squares(const SeenLandmark& seen, const SlamCandidate& candidate,
+                                   const SlamLandmark& landmark) {
+  if (!seen.extent || !candidate.extent || seen.type != landmark.type) return {};
+  if (seen.extent->from > candidate.extent->to || seen.extent->to < candidate.extent->from) return {};
+  const Eigen::Vector2d v = line_innovation(seen, *landmark.line, candidate.sighting.value);
+  const Eigen::Matrix2d s = candidate.covariance + line_noise(seen, *landmark.line);
+  return v.dot(s.inverse() * v);
 }
 
 }  // namespace
 
 bool is_usable(const SeenLandmark& seen, const SlamOptions& options) {
-  if (!seen.is_valid() || seen.type == kNoSuchType || seen.extent) return false;  // landmarks are points
+  if (!seen.is_valid() || seen.type == kNoSuchType || (seen.extent && !seen.type)) return false;
   return !seen.range || *seen.range <= options.max_range || (!seen.bearing && is_identified(seen, options));
 }
 
@@ -55,6 +67,14 @@ SlamPairs compare_with_landmarks(std::span<const SeenLandmark> seen,
       const SeenLandmark& s = seen[k];
       if (!is_usable(s, options)) continue;
       SlamComparison& comparison = found.comparisons[k];
+      if (s.extent || landmark.line) {
+        const std::optional<double> line = line_squares(s, candidate, landmark);
+        if (!line) continue;
+        comparison.min_squares = std::min(comparison.min_squares, *line);
+        if (landmark.was_mapped && in_map[k] != landmark.key) continue;
+        if (*line < options.match) found.pairs.push_back({*line, k, candidate.landmark});
+        continue;
+      }
       const Eigen::Vector2d v = innovation(s, candidate.sighting.value);
       const auto squares = [&] { return squared_distance(s, v, candidate.covariance + sensor_noise(s)); };
       if (is_identified(s, options)) {

@@ -17,6 +17,8 @@ struct SlamCandidate {
   ExpectedSighting sighting;  ///< at the estimated pose
   Eigen::Matrix2d
       covariance;  ///< of `sighting` by the errors of pose and landmark, without the sensor's noise
+  /// Where pieces of a line may lie, from the foot of the sensor on it; absent for a point.
+  std::optional<LineExtent> extent = {};
 };
 
 /// A sighting and the landmark that it may show.

@@ -7,6 +7,7 @@
 #include <vector>
 #include "localization/identification/known_features.hpp"
 #include "localization/identification/map_landmark.hpp"
+#include "localization/slam/slam_line.hpp"
 #include "localization/slam/slam_state.hpp"
 namespace waymark::localization {
 
@@ -27,6 +28,7 @@ struct SlamLandmark {
   std::vector<KnownFeatures>
       feature_samples;                  ///< features of each match, for the map's statistics; at most 100
   std::size_t index = 0;                ///< constant while the filter lives
+  std::optional<SlamLine> line;         ///< of a line; within the filter, `at` is then its two numbers
   std::optional<SlamState::Slot> slot;  ///< absent: known from the map and not seen yet
 };
 

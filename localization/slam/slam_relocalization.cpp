@@ -208,7 +208,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     SlamLandmark& l = landmarks_[i];
     if (l.was_mapped) {  // as in the map: what was learnt while lost belongs to other landmarks
-      l.at = map_[i].at, l.covariance = map_[i].covariance;
+      set_as_mapped(l, map_[i]);
       l.log_odds = std::max(l.log_odds, log_odds(l.quality));
       l.gone = false;
       if (l.key) landmark_by_key_.insert_or_assign(*l.key, i);
@@ -222,6 +222,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
         continue;
       }
       l.slot = fresh.add(l.at, l.covariance);
+      if (l.line) fresh.set_site(*l.slot, l.line->anchor, std::max(-l.line->from, l.line->to));
       landmark_by_slot_.resize(*l.slot + 1);
       landmark_by_slot_[*l.slot] = i;
     }

@@ -146,6 +146,7 @@ void SlamState::update(std::span<const Correction> corrections) {
 
 SlamState::Slot SlamState::append(const Eigen::Vector2d& at) {
   at_.push_back(at);
+  site_.emplace_back();
   index_.push_back(active_.size());
   active_.push_back(at_.size() - 1);
   identity_.push_back(-1);
@@ -169,6 +170,15 @@ SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix<do
 
 SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance) {
   return add(at, Eigen::Matrix<double, 2, 3>::Zero(), covariance);
+}
+
+void SlamState::set_site(Slot slot, const Eigen::Vector2d& centre, double radius) {
+  site_[slot] = Site{centre, radius};
+}
+
+double SlamState::distance_to(Slot slot) const {
+  const std::optional<Site>& site = site_[slot];
+  return site ? (site->centre - pose_.at()).norm() - site->radius : (at_[slot] - pose_.at()).norm();
 }
 
 void SlamState::remove(Slot slot) {
@@ -226,7 +236,7 @@ void SlamState::focus(double radius) {
   active_.clear(), passive_.clear();
   for (std::size_t i = 0; i < order.size(); ++i) {
     const Slot slot = order[i];
-    const bool is_near = (at_[slot] - pose_.at()).norm() <= radius;
+    const bool is_near = distance_to(slot) <= radius;
     std::vector<Slot>& part = is_near ? active_ : passive_;
     index_[slot] = part.size();
     part.push_back(slot);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <vector>
 #include "localization/body_motion.hpp"
@@ -24,7 +25,8 @@ class SlamState {
   std::size_t landmarks() const { return active_.size() + passive_.size(); }
   std::span<const Slot> active() const { return active_; }
 
-  /// Returns the position of any landmark; that of a passive one dates from when it became passive.
+  /// Returns the position of any landmark, of a line its two numbers (SlamLine). That of a passive one dates
+  /// from when it became passive.
   const Eigen::Vector2d& at(Slot slot) const { return at_[slot]; }
   Eigen::Matrix2d covariance(Slot slot) const;
   /// Returns the covariance of an active landmark with the robot.
@@ -49,6 +51,8 @@ class SlamState {
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose, const Eigen::Matrix2d& own);
   /// Adds an active landmark independent of the state.
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance);
+  /// Sets where a landmark lies whose numbers are no position, and how far it extends from there, m.
+  void set_site(Slot slot, const Eigen::Vector2d& centre, double radius);
   /// Removes an active landmark.
   void remove(Slot slot);
 
@@ -66,8 +70,15 @@ class SlamState {
   Eigen::MatrixXd measured_rows() const;
 
   Pose2 pose_;
-  std::vector<Eigen::Vector2d> at_;  // by slot
-  std::vector<std::size_t> index_;   // by slot: in active_ or passive_
+  struct Site {
+    Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+    double radius = 0;
+  };
+  double distance_to(Slot slot) const;
+
+  std::vector<Eigen::Vector2d> at_;        // by slot
+  std::vector<std::optional<Site>> site_;  // by slot
+  std::vector<std::size_t> index_;         // by slot: in active_ or passive_
   std::vector<Slot> active_, passive_;
   Eigen::MatrixXd paa_;        // robot and active landmarks
   Eigen::MatrixXd pab_, pbb_;  // as of the last focus(); rows of pab_: those active then

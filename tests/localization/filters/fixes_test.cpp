@@ -206,6 +206,27 @@ TEST(SightingMemory, CarriesWhatWasSeenAlong) {
   }
 }
 
+// Odometry whose lasting errors are estimated has motions with covariances that are not positive.
+TEST(SightingMemory, IsNotBentByCovariancesThatAreNotPositive) {
+  MadeDrive drive(33);
+  SightingMemory memory;
+  for (int i = 0; i < 60; ++i) {
+    BodyMotion motion = drive.drive();
+    motion.covariance(0, 0) -= 0.0015;  // along: -0.0005 m^2
+    memory.predict(motion);
+    memory.add(drive.look());
+    const RememberedSightings all = memory.recall(200);
+    ASSERT_TRUE(all.robot_covariance.allFinite()) << i;
+    for (int k = 0; k < 3; ++k) EXPECT_GE(all.robot_covariance(k, k), -1e-12) << i;
+    for (const SeenLandmark& s : all.set.sightings) {
+      ASSERT_TRUE(s.is_valid());
+      const Pose2 at =
+          drive.truth() * Pose2{*s.range * std::cos(*s.bearing), *s.range * std::sin(*s.bearing), 0};
+      EXPECT_LT((at.at() - drive.map()[*s.identity - 1].at).norm(), 1) << i;
+    }
+  }
+}
+
 TEST(ParticleFilter, ConstellationsFindThePlaceInALargeMap) {
   // 4000 particles drawn at 20,000 landmarks would miss it.
   auto landmarks = scatter_landmarks(20000, 1000, 41);
