@@ -246,6 +246,29 @@ void constellation(benchmark::State& state) {
 }
 BENCHMARK(constellation)->Arg(1000)->Arg(30000)->Arg(300000)->Unit(benchmark::kMillisecond);
 
+/// Search within a prior of some metres and degrees, in a map of a fifth of the objects. Argument: sd, m.
+void constellation_near(benchmark::State& state) {
+  Random random(4, "near");
+  std::vector<localization::MapLandmark> objects = scatter_landmarks(5000, 500, 3, 0.05), mapped;
+  std::vector<localization::LandmarkPosition> places;
+  for (localization::MapLandmark& l : objects) {
+    l.features.value[0] = random.log_uniform(0.2, 1);
+    places.push_back({{l.at.x(), l.at.y(), 0}, Eigen::Vector3d::UnitZ()});
+    if (random.bernoulli(0.2)) mapped.push_back(l);
+  }
+  const localization::ConstellationIndex index(mapped, localization::FeatureScales{});
+  const auto sd = static_cast<double>(state.range(0));
+  localization::PoseEstimate prior;
+  prior.covariance = Eigen::Vector3d(sd * sd, sd * sd, 0.01).asDiagonal();
+  std::vector<localization::SightingSet> sets;
+  for (int i = 0; i < 20; ++i)
+    sets.push_back(look(objects, places, {}, prior.pose, {.reach = 25}, random).set);
+  std::size_t found = 0, tries = 0;
+  for (auto _ : state) found += index.find_near(sets[tries++ % sets.size()], prior).fix.has_value();
+  state.counters["found"] = static_cast<double>(found) / static_cast<double>(tries);
+}
+BENCHMARK(constellation_near)->Arg(1)->Arg(3)->Arg(10)->Unit(benchmark::kMillisecond);
+
 void kalman_update(benchmark::State& state) {
   localization::MapLandmark landmark;
   landmark.at = {8, 2};

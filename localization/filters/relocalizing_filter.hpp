@@ -28,8 +28,8 @@ namespace waymark::localization {
 ///
 /// With a NearPoseFinder a filter that was lost stays so until its pose is proven: by the objects matched
 /// since (RegainEvidence), or by a search of the poses that odometry allows, every third set. While chance
-/// explains its matches, the estimate is the last reliable one, predicted by odometry. Restarts then wait for
-/// that, too.
+/// explains its matches, the estimate is the last reliable one, predicted by odometry, and the filter
+/// restarts there every twentieth set; while it does not, there are no restarts.
 class RelocalizingFilter final : public Localizer {
  public:
   using Factory = std::function<std::unique_ptr<Localizer>(const PoseEstimate&)>;
