@@ -12,14 +12,18 @@ constexpr double kFade = 1.0 / 40;  // per set: some 10 s of a scanner
 
 }  // namespace
 
+bool was_compared(const Match& match) {
+  return match.verdict == Verdict::matched || match.verdict == Verdict::nothing_near ||
+         match.verdict == Verdict::features_differ || match.verdict == Verdict::too_far;
+}
+
 double matched_fraction(const std::vector<Match>& matches) {
-  int fits = 0, strange = 0;
+  int fits = 0, compared = 0;
   for (const Match& match : matches) {
     fits += match.verdict == Verdict::matched;
-    strange += match.verdict == Verdict::nothing_near || match.verdict == Verdict::features_differ ||
-               match.verdict == Verdict::too_far;
+    compared += was_compared(match);
   }
-  return fits + strange > 0 ? static_cast<double>(fits) / (fits + strange) : -1;
+  return compared > 0 ? static_cast<double>(fits) / compared : -1;
 }
 
 ChanceFraction make_chance_fraction(LandmarkMatcher matcher) {

@@ -5,6 +5,9 @@
 #include "localization/identification/landmark_matcher.hpp"
 namespace waymark::localization {
 
+/// Returns whether a sighting was compared with landmarks of its type: it has one, or none fits.
+bool was_compared(const Match& match);
+
 /// Returns the fraction of a set's sightings with a landmark, among those that could have one. Negative if
 /// there are none.
 double matched_fraction(const std::vector<Match>& matches);

@@ -6,17 +6,14 @@
 #include <limits>
 #include <set>
 
+#include "localization/filters/explained_fraction.hpp"
+
 namespace waymark::localization {
 namespace {
 
 constexpr double kChanceKept = 1 - 1.0 / 100;  // of the chance matches, per set
 constexpr double kChancePrior = 0.5;           // chance matches, and others, before any is known
 constexpr double kMaxPoseShare = 10;           // of the variance of the pose, over that of the sighting
-
-bool is_compared(const Match& match) {
-  return match.verdict == Verdict::matched || match.verdict == Verdict::nothing_near ||
-         match.verdict == Verdict::features_differ || match.verdict == Verdict::too_far;
-}
 
 bool is_precise(const PoseEstimate& at, const SeenLandmark& s) {
   const double square = *s.range * *s.range;
@@ -45,7 +42,7 @@ void RegainEvidence::add(const SightingSet& seen, std::span<const Match> matches
   const auto objects = follower_.follow(seen);
   int compared = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (!is_compared(matches[i])) continue;
+    if (!was_compared(matches[i])) continue;
     if (!seen.sightings[i].has_position()) {
       only_positions_ = only_positions_ && matches[i].verdict != Verdict::matched;
       continue;

@@ -60,7 +60,10 @@ void RelocalizingFilter::judge_matches() {
     sets_since_search_ = kNearInterval, near_searches_ = 0;
     evidence_.clear();
   }
-  if (regained_) return;
+  if (regained_) {
+    evidence_.clear();  // the matches of a filter that is not lost are not needed
+    return;
+  }
   const PoseEstimate here = inner_->estimate();
   const double log_false_alarms = evidence_.log_false_alarms(here, reliable_);
   regained_ = !fails() && (log_false_alarms < kRegained || !evidence_.is_possible());
@@ -133,7 +136,7 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   if (chance_ && fit >= 0) {
     const double chance = chance_(seen, inner_->estimate(), matches);
     explained_.add(fit, chance);
-    evidence_.add(seen, matches, chance, before);
+    if (near_) evidence_.add(seen, matches, chance, before);
     chance_matches_ =
         chance_matches_
             ? !is_explained()

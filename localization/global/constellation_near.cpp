@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Poses next to an expected one: every sighting votes with every landmark that it could be for the poses at
 // which both agree (correlative matching; Olson 2009).
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "core/covariance.hpp"
 #include "core/grid.hpp"
 #include "localization/global/constellation_search.hpp"
 
@@ -38,10 +38,7 @@ void ConstellationSearch::guess_near(const PoseEstimate& prior) {
   for (const Seen& s : points_) sds.push_back(s.sd);
   std::ranges::nth_element(sds, sds.begin() + std::ssize(sds) / 2);
   const double cell = kVoteCell * std::max(1e-3, std::hypot(sds[sds.size() / 2], index_.typical_sd_));
-  const Eigen::Matrix2d spread = prior.covariance.topLeftCorner<2, 2>();
-  const double reach =
-      kPriorSigmas * std::sqrt(Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(spread).eigenvalues()[1]) +
-      cell;
+  const double reach = kPriorSigmas * largest_sd(prior.covariance.topLeftCorner<2, 2>()) + cell;
   const double turn = std::min(std::numbers::pi, kPriorSigmas * std::sqrt(prior.covariance(2, 2)));
   const double step = cell / std::max(extent_, cell);
   const auto turns = static_cast<std::int64_t>(std::ceil(turn / step));

@@ -16,7 +16,8 @@ struct PoseSearchResult {
   std::string_view reason = {};          ///< why none is accepted
   /// That the first candidate is not the robot's pose; absent for ranges, whose poses are compared by chi2.
   std::optional<double> wrong_probability = {};
-  double log_false_alarms = 0;  ///< ln of the expected number of chance poses as good as the first candidate
+  /// ln of the expected number of chance poses as good as the best constellation; 0 without one.
+  double log_false_alarms = 0;
 };
 
 /// Returns the probability that the first of distinct poses is wrong; 1 without poses.

@@ -16,22 +16,6 @@ constexpr double kRangeMargin =
 constexpr double kCertainty = 0.9;  // of a pair with a landmark of the map: it is not revised
 constexpr double kLineGap = 1.5;    // m, a door: pieces of a line on both sides are of one landmark
 
-// Makes a landmark of a map of a line, whose samples become azimuths.
-void state_as_position(SlamLandmark& landmark) {
-  const SlamLine& line = *landmark.line;
-  const LinePosition position = line_position(line, landmark.at, landmark.covariance);
-  landmark.at = position.at, landmark.covariance = position.covariance;
-  const double length = line.to - line.from;
-  for (KnownFeatures& sample : landmark.feature_samples) {
-    sample.value[line.direction] = wrap_angle(position.azimuth - sample.value[line.direction]);
-    sample.value[line.length] = length;
-  }
-  if (landmark.was_mapped) return;
-  landmark.features.value[line.direction] = position.azimuth;
-  landmark.features.variance[line.direction] = position.azimuth_variance;
-  landmark.features.value[line.length] = length;
-}
-
 }  // namespace
 
 EkfSlam::EkfSlam(const PoseEstimate& start, SlamOptions options)
@@ -64,19 +48,6 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
     landmark_by_key_.emplace(known.key, landmarks_.size());
     landmarks_.push_back(std::move(l));
   }
-}
-
-// Sets position and covariance to those of the map.
-void EkfSlam::set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) const {
-  landmark.at = known.at, landmark.covariance = known.covariance;
-  const auto features = scales_.line(known.type);
-  if (!features || !known.is_line()) return;
-  constexpr double kMinTurnVariance = 1e-6;  // rad^2: a map may state none
-  landmark.line = slam_line(known, *features);
-  landmark.at = Eigen::Vector2d::Zero();
-  landmark.covariance = Eigen::Vector2d(known.normal.dot(known.covariance * known.normal),
-                                        std::max(known.normal_variance, kMinTurnVariance))
-                            .asDiagonal();
 }
 
 void EkfSlam::predict(const BodyMotion& motion) {
@@ -309,12 +280,6 @@ void EkfSlam::add_new(const SightingSet& seen, std::span<const SlamComparison> c
                       std::vector<Match>& matches) {
   std::vector<std::size_t> new_bearings;
   bool line_starts = false;
-  const auto continues_line = [&](std::size_t k) {
-    return compare_with_landmarks(seen.sightings, landmarks_in_reach(seen), landmarks_,
-                                  std::vector<std::optional<LandmarkKey>>(matches.size()), scales_, options_)
-               .comparisons[k]
-               .min_squares <= options_.fresh;
-  };
   for (std::size_t k = 0; k < matches.size(); ++k) {
     const SeenLandmark& s = seen.sightings[k];
     Verdict& verdict = matches[k].verdict;
@@ -332,7 +297,7 @@ void EkfSlam::add_new(const SightingSet& seen, std::span<const SlamComparison> c
       verdict = Verdict::too_far;
     } else if (!is_new) {
       verdict = is_named ? Verdict::too_far : Verdict::ambiguous;
-    } else if (s.extent && line_starts && continues_line(k)) {
+    } else if (s.extent && line_starts && continues_line(s, seen)) {
       verdict = Verdict::ambiguous;  // it will match the line that another piece of it started
     } else if (s.has_position() || s.extent) {
       line_starts = line_starts || s.extent;
@@ -363,36 +328,6 @@ void EkfSlam::add(const SeenLandmark& seen, const Pose2& mount) {
   const Eigen::Matrix2d back = e.by_landmark.inverse();
   fresh.slot = state_.add(fresh.at, -back * e.by_pose, back * sensor_noise(seen) * back.transpose());
   append(std::move(fresh), seen);
-}
-
-void EkfSlam::add_line(const SeenLandmark& seen, const Pose2& mount) {
-  const Pose2 sensor = state_.pose() * mount;
-  SlamLandmark fresh;
-  fresh.line = slam_line(seen, sensor, *scales_.line(*seen.type));
-  const ExpectedSighting e = expect(state_.pose(), mount, *fresh.line, fresh.at);
-  const Eigen::Matrix2d back = e.by_landmark.inverse();
-  fresh.slot =
-      state_.add(fresh.at, -back * e.by_pose, back * line_noise(seen, *fresh.line) * back.transpose());
-  fresh.type = seen.type;
-  fresh.matches = fresh.expected = 1;
-  see_piece(fresh, seen, sensor);
-  landmark_by_slot_.resize(*fresh.slot + 1);
-  landmark_by_slot_[*fresh.slot] = landmarks_.size();
-  landmarks_.push_back(std::move(fresh));
-}
-
-// Extends a line by a piece. Its samples are deviations from the line, whose direction is an unknown. A line
-// of the map keeps its ends.
-void EkfSlam::see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor) {
-  SlamLine& line = *landmark.line;
-  const Eigen::Vector2d state = state_.at(*landmark.slot);
-  if (!landmark.was_mapped) extend(line, state, *seen.extent, sensor.at());
-  state_.set_site(*landmark.slot, line.anchor, std::max(-line.from, line.to));
-  if (landmark.feature_samples.size() >= 100) return;
-  KnownFeatures sample = seen.features;
-  const double expected = std::atan2(line.normal.y(), line.normal.x()) + state[1] - sensor.yaw;
-  sample.value[line.direction] = wrap_angle(seen.features.value[line.direction] - expected);
-  landmark.feature_samples.push_back(sample);
 }
 
 void EkfSlam::add(const BearingStarts::Start& start, const SightingSet& seen) {

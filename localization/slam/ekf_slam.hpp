@@ -92,6 +92,7 @@ class EkfSlam final : public Localizer {
   void add(const SeenLandmark& seen, const Pose2& mount);
   void set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) const;
   void add_line(const SeenLandmark& seen, const Pose2& mount);
+  bool continues_line(const SeenLandmark& piece, const SightingSet& seen) const;
   void see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor);
   void add(const BearingStarts::Start& start, const SightingSet& seen);
   void append(SlamLandmark fresh, const SeenLandmark& seen);

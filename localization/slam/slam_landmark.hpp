@@ -32,4 +32,7 @@ struct SlamLandmark {
   std::optional<SlamState::Slot> slot;  ///< absent: known from the map and not seen yet
 };
 
+/// Makes a landmark of a map of a line: position instead of its two numbers, samples as azimuths.
+void state_as_position(SlamLandmark& landmark);
+
 }  // namespace waymark::localization

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "localization/filters/regain_evidence.hpp"
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 
@@ -26,12 +27,7 @@ constexpr int kLongestTrial = 40;                              // sets
 
 // Returns the probability of at least `a` of a + b tosses of a coin.
 double sign_test(int a, int b) {
-  double term = std::pow(0.5, a + b), sum = 0;  // of no toss
-  for (int k = 0; k <= a + b; ++k) {
-    if (k >= a) sum += term;
-    term *= static_cast<double>(a + b - k) / (k + 1);
-  }
-  return std::min(1.0, sum);
+  return std::exp(log_binomial_tail(a, a + b, 0.5));
 }
 
 }  // namespace

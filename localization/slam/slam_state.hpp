@@ -69,13 +69,13 @@ class SlamState {
   void add_column(Slot slot);
   Eigen::MatrixXd measured_rows() const;
 
-  Pose2 pose_;
   struct Site {
     Eigen::Vector2d centre = Eigen::Vector2d::Zero();
     double radius = 0;
   };
   double distance_to(Slot slot) const;
 
+  Pose2 pose_;
   std::vector<Eigen::Vector2d> at_;        // by slot
   std::vector<std::optional<Site>> site_;  // by slot
   std::vector<std::size_t> index_;         // by slot: in active_ or passive_

@@ -41,10 +41,8 @@ double TreeShapes::real_fraction() const {
 std::string tree_shapes_warning(const TreeShapes& seen) {
   return fmt::format(
       "{:.0f} % of {} supposed trees are taller than {:g} m or have crowns narrower than a tenth of their "
-      "height "
-      "(at most 5 % of trees): this band holds no heights above ground, but perhaps brightness or "
-      "elevations; the "
-      "confidences are lowered so that at most {:.0f} % count as real",
+      "height (at most 5 % of trees): this band holds no heights above ground, but perhaps brightness or "
+      "elevations; the confidences are lowered so that at most {:.0f} % count as real",
       100 * static_cast<double>(seen.trees - seen.possible) /
           static_cast<double>(std::max<std::int64_t>(1, seen.trees)),
       seen.trees, kTallestTree, 100 * seen.real_fraction());
@@ -61,10 +59,8 @@ bool is_vegetation(double index, bool infrared) {
 std::string crown_colours_warning(const CrownColours& seen) {
   return fmt::format(
       "{} of {} supposed crowns have the colour of vegetation (90 % or more among trees), as where rocks, "
-      "roofs or "
-      "shadows are taken for crowns: the confidences of the other {} are lowered so that at most {:.0f} "
-      "count as "
-      "real",
+      "roofs or shadows are taken for crowns: the confidences of the other {} are lowered so that at most "
+      "{:.0f} count as real",
       seen.green, seen.green + seen.other, seen.other, max_other(seen));
 }
 

@@ -8,6 +8,7 @@
 
 #include "pipeline/rocks/bright_side.hpp"
 #include "pipeline/rocks/find_shadow_rocks.hpp"
+#include "pipeline/vision/middle_of.hpp"
 
 namespace waymark::pipeline {
 namespace {
@@ -21,6 +22,7 @@ constexpr double kMinSpots = 8;
 constexpr double kBeside = 0.8;  // radians about a direction
 constexpr int kFewCraters = 10, kManyCraters = 40;
 constexpr double kClear = 3, kVeryClear = 4;  // standard deviations of the difference of both sides
+constexpr std::int64_t kSpotSide = 1000;      // of the middle of an image, pixels
 constexpr double kBoulder = 20;               // pixels, diameter
 constexpr double kClearBoulders = 3;          // by which one side has to lead
 
@@ -28,16 +30,6 @@ struct Spot {
   BrightSide side;
   float peak = 0;
 };
-
-Pixels middle_of(const Pixels& image) {
-  constexpr std::int64_t kSide = 1000;
-  const std::int64_t columns = std::min(kSide, image.columns()), rows = std::min(kSide, image.rows());
-  const std::int64_t x0 = (image.columns() - columns) / 2, y0 = (image.rows() - rows) / 2;
-  Pixels middle(columns, rows);
-  for (std::int64_t y = 0; y < rows; ++y)
-    for (std::int64_t x = 0; x < columns; ++x) middle(x, y) = image(x0 + x, y0 + y);
-  return middle;
-}
 
 std::vector<Spot> clear_spots(const Pixels& middle) {
   const auto map = map_shadows(middle, 32);
@@ -142,7 +134,7 @@ double count_boulders(const Pixels& image, Radians sun_angle) {
 }
 
 std::optional<SunAngle> estimate_rock_sun_angle(const Pixels& image, std::optional<SunAngle> craters) {
-  const Pixels middle = middle_of(image);
+  const Pixels middle = middle_of(image, kSpotSide);
   const std::vector<Spot> spots = clear_spots(middle);
   Axis axis = axis_of(spots, 0);
   if (axis.length < kMinAxis) {

@@ -13,4 +13,14 @@ inline TypeRegistry ellipses() {
   return types;
 }
 
+/// Returns a catalogue of one type, whose landmarks are lines.
+inline TypeRegistry edges() {
+  TypeRegistry types;
+  types.add({.name = "edge",
+             .summary = "A line",
+             .features = {{"direction", "rad", Scale::direction, -4, 4, "Normal, clockwise from north", 0.05},
+                          {"length", "m", Scale::ratio, 0.1, 1000, "Length"}}});
+  return types;
+}
+
 }  // namespace waymark::test

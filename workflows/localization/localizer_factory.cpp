@@ -71,6 +71,14 @@ double wrong_probability(const std::vector<Fix>& fixes) {
   return localization::wrong_probability(chances);
 }
 
+/// Adds the answer of a search for constellations to what was found before.
+void take(const localization::ConstellationAnswer& answer, localization::PoseSearchResult& found) {
+  if (answer.fix) found.accepted = answer.fix->pose();
+  for (const localization::ConstellationFix& fix : answer.candidates) found.candidates.push_back(fix.pose());
+  found.reason = answer.reason;
+  if (!answer.candidates.empty()) found.log_false_alarms = answer.candidates[0].log_false_alarms;
+}
+
 /// Keeps the last pose that was accepted, or why there is none. Its time is not known here: NaN.
 void record(std::optional<localization::PoseSearchRecord>& record,
             const localization::PoseSearchResult& found) {
@@ -125,13 +133,8 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
   const localization::NearPoseFinder near = [known, open_index](const localization::SightingSet& seen,
                                                                 const localization::PoseEstimate& prior) {
     if (!*known) known->emplace(open_index());
-    const localization::ConstellationAnswer answer = (*known)->index.find_near(seen, prior);
     localization::PoseSearchResult found;
-    if (answer.fix) found.accepted = answer.fix->pose();
-    for (const localization::ConstellationFix& fix : answer.candidates)
-      found.candidates.push_back(fix.pose());
-    found.reason = answer.reason;
-    if (!answer.candidates.empty()) found.log_false_alarms = answer.candidates[0].log_false_alarms;
+    take((*known)->index.find_near(seen, prior), found);
     return found;
   };
   const localization::PoseFinder search_map = [known, open_index, skyline, ground = task.ground,
@@ -162,10 +165,7 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
       if (found.accepted || tops.size() == seen.sightings.size()) return found;
     }
     const localization::ConstellationAnswer answer = (*known)->index.find(seen);
-    if (answer.fix) found.accepted = answer.fix->pose();
-    for (const localization::ConstellationFix& fix : answer.candidates)
-      found.candidates.push_back(fix.pose());
-    found.reason = answer.reason;
+    take(answer, found);
     if (!answer.candidates.empty() && found.candidates.size() == answer.candidates.size())
       found.wrong_probability = wrong_probability(answer.candidates);
     return found;

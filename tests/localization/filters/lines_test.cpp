@@ -6,20 +6,12 @@
 #include "localization/filters/kalman.hpp"
 #include "localization/filters/multi_hypothesis_filter.hpp"
 #include "localization/filters/particle_filter.hpp"
+#include "tests/localization/made_types.hpp"
 #include "tests/localization/made_world.hpp"
 #include "tests/support/angles.hpp"
 
 namespace waymark::test {
 namespace {
-
-TypeRegistry line_types() {
-  TypeRegistry types;
-  types.add({.name = "edge",
-             .summary = "A line",
-             .features = {{"direction", "rad", Scale::direction, -4, 4, "Normal, clockwise from north", 0.05},
-                          {"length", "m", Scale::ratio, 0.1, 1000, "Length"}}});
-  return types;
-}
 
 MapLandmark line_at(LandmarkKey key, double x, double y, double azimuth, double length) {
   MapLandmark line;
@@ -74,7 +66,7 @@ RC_GTEST_PROP(Lines, DerivativesAreThoseOfTheMeasurement, ()) {
 
 // A wall in the north: y and yaw are measured, x is not, wherever along the wall its piece lies.
 TEST(Lines, SayNothingAlongThemselves) {
-  const FeatureScales scales(line_types());
+  const FeatureScales scales(edges());
   const MapLandmark wall = line_at(1, 4, 8, std::numbers::pi, 30);
   const Pose2 truth{1, 2, 0.3}, guess{1.2, 1.8, 0.35};
   const LandmarkMatcher matcher(LandmarkWindow{LandmarkGrid({wall})}, scales);
@@ -105,7 +97,7 @@ TEST(Lines, SayNothingAlongThemselves) {
 }
 
 TEST(Lines, OfTwoWallsFixThePose) {
-  const FeatureScales scales(line_types());
+  const FeatureScales scales(edges());
   const MapLandmark north = line_at(1, 4, 8, std::numbers::pi, 30),
                     east = line_at(2, 12, 0, -kRightAngle, 20);
   const Pose2 truth{1, 2, 0.3};
@@ -118,7 +110,7 @@ TEST(Lines, OfTwoWallsFixThePose) {
 
 // Two pieces of one wall in the map: which of them is seen does not matter, so the sighting counts.
 TEST(Lines, OfOneWallInPiecesAreCertain) {
-  const FeatureScales scales(line_types());
+  const FeatureScales scales(edges());
   const std::vector<MapLandmark> pieces{line_at(1, -3, 8, std::numbers::pi, 10),
                                         line_at(2, 4, 8, std::numbers::pi, 10)};
   const Pose2 truth{1, 2, 0.3};
@@ -137,7 +129,7 @@ TEST(Lines, OfOneWallInPiecesAreCertain) {
 
 // Facades of one line: the piece that is seen decides which it is.
 TEST(Lines, AreMatchedWithinTheirExtent) {
-  const FeatureScales scales(line_types());
+  const FeatureScales scales(edges());
   const LandmarkGrid map({line_at(1, -10, 8, std::numbers::pi, 12), line_at(2, 10, 8, std::numbers::pi, 12)});
   const Pose2 robot{0, 2, 0};
   const auto match_of = [&](double from, double to) {

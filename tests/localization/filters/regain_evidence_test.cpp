@@ -38,7 +38,7 @@ PoseEstimate precise(double sd) {
   return e;
 }
 
-/// Sightings of objects far apart, the first `hits` of which are matched with landmarks of their own.
+/// Sightings of objects far apart. The first `hits` are matched with landmarks of their own.
 void add_set(RegainEvidence& evidence, int count, int hits, const PoseEstimate& at = precise(0.05),
              bool with_range = true) {
   SightingSet seen;

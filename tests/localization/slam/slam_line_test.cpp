@@ -6,19 +6,11 @@
 #include <numbers>
 
 #include "localization/slam/ekf_slam.hpp"
+#include "tests/localization/made_types.hpp"
 #include "tests/localization/made_world.hpp"
 
 namespace waymark::test {
 namespace {
-
-TypeRegistry wall_types() {
-  TypeRegistry types;
-  types.add({.name = "edge",
-             .summary = "A line",
-             .features = {{"direction", "rad", Scale::direction, -4, 4, "Normal, clockwise from north", 0.05},
-                          {"length", "m", Scale::ratio, 0.1, 1000, "Length"}}});
-  return types;
-}
 
 /// A piece of wall that is seen from its left.
 struct MadePiece {
@@ -59,7 +51,7 @@ class RoomDrive {
   }
 
   BodyMotion drive() {
-    const BodyMotion odometry = twist_motion(1, 0, 0.125, 0.5, noise_);
+    const BodyMotion odometry = twist_motion(1, 0, 0.125, 0.5, kMadeNoise);
     const Eigen::Vector3d error = square_root(odometry.covariance) *
                                   Eigen::Vector3d(random_.normal(), random_.normal(), random_.normal());
     truth_ = truth_ * pose_of(odometry.step.vector() + error);
@@ -78,19 +70,13 @@ class RoomDrive {
 
  private:
   Random random_;
-  OdometryNoise noise_{.along_per_metre = 0.002,
-                       .across_per_metre = 0.0005,
-                       .yaw_per_metre = 0.0005,
-                       .yaw_per_radian = 0.002,
-                       .position_per_second = 1e-7,
-                       .yaw_per_second = 1e-7};
   std::vector<MadePiece> pieces_;
   Pose2 truth_{0, -8, 0};
 };
 
 EkfSlam line_slam(const Pose2& start, const SlamOptions& options = {}, std::vector<MapLandmark> map = {}) {
   return EkfSlam({start, Eigen::Matrix3d::Identity() * 1e-9}, LandmarkGrid(std::move(map)),
-                 FeatureScales(wall_types()), options);
+                 FeatureScales(edges()), options);
 }
 
 TEST(SlamLine, DerivativesAreThoseOfTheMeasurement) {
@@ -132,7 +118,7 @@ TEST(SlamLine, ANewLineHasItsMeasuredCovariance) {
     const SeenLandmark s = *look_at_piece(wall, robot.pose, random);
     Pose2 start = robot.pose;
     start.x += 0.1 * random.normal(), start.y += 0.2 * random.normal(), start.yaw += 0.03 * random.normal();
-    EkfSlam slam({start, robot.covariance}, LandmarkGrid(), FeatureScales(wall_types()), {});
+    EkfSlam slam({start, robot.covariance}, LandmarkGrid(), FeatureScales(edges()), {});
     slam.update({{}, {s}});
     const std::vector<SlamLandmark> all = slam.landmarks();
     ASSERT_EQ(all.size(), 1U);
@@ -200,19 +186,9 @@ TEST(SlamLine, CompressedAndFullFilterAgree) {
 }
 
 TEST(SlamLine, ItsCovarianceIsThatOfItsErrors) {
-  constexpr int kRuns = 50;
-  double sum = 0;
-  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
-    RoomDrive drive(seed);
-    EkfSlam slam = line_slam(drive.truth());
-    for (int i = 0; i < 60; ++i) {
-      slam.predict(drive.drive());
-      slam.update(drive.look());
-    }
-    sum += nees(slam.estimate(), drive.truth()) / (3 * kRuns);
-  }
-  // 150 squares of unit normals: 95 % within 0.79 and 1.24. An EKF that linearises is a little above (Bailey
-  // et al. 2006): 1.26 over 1000 drives.
+  const double sum = mean_nees([](std::uint64_t seed) { return RoomDrive(seed); },
+                               [](const Pose2& start) { return line_slam(start); });
+  // An EKF that linearises is a little above (Bailey et al. 2006): 1.26 over 1000 drives.
   EXPECT_GT(sum, 0.75);
   EXPECT_LT(sum, 1.4);
 }
@@ -235,7 +211,7 @@ TEST(SlamLine, WallsOfAMapAreMatched) {
   }
   const Pose2 truth{1, 2, 0.3};
   const PoseEstimate guess{{1.2, 1.8, 0.33}, Eigen::Vector3d(0.09, 0.09, 0.01).asDiagonal()};
-  EkfSlam slam(guess, LandmarkGrid(map), FeatureScales(wall_types()), {});
+  EkfSlam slam(guess, LandmarkGrid(map), FeatureScales(edges()), {});
   Random random(1, "map");
   for (int i = 0; i < 5; ++i) {
     const auto matches = slam.update({{},
