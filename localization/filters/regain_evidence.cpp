@@ -38,7 +38,7 @@ double log_binomial_tail(int hits, int trials, double p) {
 }
 
 void RegainEvidence::add(const SightingSet& seen, std::span<const Match> matches, double chance,
-                         const PoseEstimate& at) {
+                         const PoseEstimate& before, const PoseEstimate& after) {
   const auto objects = follower_.follow(seen);
   int compared = 0;
   for (std::size_t i = 0; i < matches.size(); ++i) {
@@ -47,7 +47,7 @@ void RegainEvidence::add(const SightingSet& seen, std::span<const Match> matches
       only_positions_ = only_positions_ && matches[i].verdict != Verdict::matched;
       continue;
     }
-    if (!is_precise(at, seen.sightings[i])) continue;
+    if (!is_precise(before, seen.sightings[i]) || !is_precise(after, seen.sightings[i])) continue;
     ++compared;
     auto& landmark = objects_[objects[i].object];
     landmark.reset();

@@ -17,9 +17,10 @@ class RegainEvidence {
  public:
   void predict(const BodyMotion& motion) { follower_.predict(motion); }
   /// Adds the matches of a set, and the fraction of its sightings that matched at a wrong pose; < 0: none.
-  /// `at`: estimate before the set. If it is less precise than the sightings, anything fits, which is no
-  /// evidence.
-  void add(const SightingSet& seen, std::span<const Match> matches, double chance, const PoseEstimate& at);
+  /// `before`, `after`: estimates before and after the set. If one of them is less precise than the
+  /// sightings, anything fits, which is no evidence: particles that fit nothing spread out within a set.
+  void add(const SightingSet& seen, std::span<const Match> matches, double chance, const PoseEstimate& before,
+           const PoseEstimate& after);
   /// Forgets the objects, not the rate of chance matches: the filter has another pose.
   void clear() { objects_.clear(), only_positions_ = true; }
   /// Returns whether all matches are of sightings with a position. Lines and bearings are not counted as

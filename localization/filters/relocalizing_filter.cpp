@@ -12,6 +12,9 @@ constexpr int kNearInterval = 3;                 // sets between searches of the
 // ln of the expected number of chance poses: of matches that agree with odometry, and of a pose that is
 // found.
 constexpr double kRegained = -4.6, kCertain = -6.9;
+// Below one half expected chance poses the filter's pose has a smaller expected squared error than
+// odometry's.
+constexpr double kMaxByChance = -0.69;
 constexpr double kFade = 0.1, kSlowFade = 0.01;  // decay of the fit and the usual fit, per set
 constexpr double kMinOfUsual = 0.5, kWell = 0.8;
 // Fractions of the sightings explained beyond chance, or of the usual fit where the map lacks most objects.
@@ -68,7 +71,7 @@ void RelocalizingFilter::judge_matches() {
   const double log_false_alarms = evidence_.log_false_alarms(here, reliable_);
   regained_ = !fails() && (log_false_alarms < kRegained || !evidence_.is_possible());
   by_chance_ = !regained_ && evidence_.is_possible() &&
-               (log_false_alarms > 0 || position_variance(here) > position_variance(reliable_));
+               (log_false_alarms > kMaxByChance || position_variance(here) > position_variance(reliable_));
 }
 
 // Searches the poses that odometry allows since the loss. Returns whether the filter restarted at one.
@@ -136,7 +139,7 @@ std::vector<Match> RelocalizingFilter::update(const SightingSet& seen) {
   if (chance_ && fit >= 0) {
     const double chance = chance_(seen, inner_->estimate(), matches);
     explained_.add(fit, chance);
-    if (near_) evidence_.add(seen, matches, chance, before);
+    if (near_) evidence_.add(seen, matches, chance, before, inner_->estimate());
     chance_matches_ =
         chance_matches_
             ? !is_explained()

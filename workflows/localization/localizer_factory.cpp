@@ -198,7 +198,10 @@ localization::LineOfSight line_of_sight(const LocalizeTask& task) {
 
 std::unique_ptr<localization::Localizer> make_particle_localizer(
     LocalizeTask& task, const std::optional<localization::PoseEstimate>& start, const SearchOptions& search) {
-  const localization::PoseFinder finder = make_pose_finder(task, search);
+  PoseSearch poses = make_pose_search(task, search);
+  const localization::PoseFinder finder = std::move(poses.find);
+  localization::NearPoseFinder near;
+  if (!task.settings.identification.use_identities) near = std::move(poses.near);
   const localization::LandmarkMatcher matcher = make_matcher(task);
   const auto particles = [matcher, &settings = task.settings, visible = line_of_sight(task)](
                              const std::optional<localization::PoseEstimate>& from,
@@ -211,11 +214,11 @@ std::unique_ptr<localization::Localizer> make_particle_localizer(
   localization::ChanceFraction chance;
   if (!task.settings.identification.use_identities) chance = localization::make_chance_fraction(matcher);
   const auto track =
-      [particles, finder, chance, scales = localization::FeatureScales(task.map.map.types())](
+      [particles, finder, near, chance, scales = localization::FeatureScales(task.map.map.types())](
           const localization::PoseEstimate& found) -> std::unique_ptr<localization::Localizer> {
     return std::make_unique<localization::RelocalizingFilter>(
         found, [particles](const localization::PoseEstimate& from) { return particles(from, {}); }, finder,
-        chance, scales);
+        chance, scales, true, near);
   };
   if (start) return track(*start);
   return std::make_unique<localization::LocatingFilter>(particles({}, finder), track);

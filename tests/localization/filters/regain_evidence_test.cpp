@@ -7,6 +7,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace waymark::test {
@@ -40,7 +41,7 @@ PoseEstimate precise(double sd) {
 
 /// Sightings of objects far apart. The first `hits` are matched with landmarks of their own.
 void add_set(RegainEvidence& evidence, int count, int hits, const PoseEstimate& at = precise(0.05),
-             bool with_range = true) {
+             bool with_range = true, const std::optional<PoseEstimate>& after = {}) {
   SightingSet seen;
   std::vector<Match> matches;
   for (int i = 0; i < count; ++i) {
@@ -53,7 +54,7 @@ void add_set(RegainEvidence& evidence, int count, int hits, const PoseEstimate& 
     match.verdict = i < hits ? Verdict::matched : Verdict::too_far;
     match.key = static_cast<LandmarkKey>(i + 1);
   }
-  evidence.add(seen, matches, 0.02, at);
+  evidence.add(seen, matches, 0.02, at, after.value_or(at));
 }
 
 TEST(RegainEvidence, DependsOnThePosesThatOdometryAllows) {
@@ -81,6 +82,13 @@ TEST(RegainEvidence, CountsAnObjectOnceHoweverOftenItIsSeen) {
 TEST(RegainEvidence, MatchesOfAVaguePoseAreNone) {
   RegainEvidence evidence;
   for (int set = 0; set < 20; ++set) add_set(evidence, 12, 12, precise(3));
+  EXPECT_GE(evidence.log_false_alarms(precise(0.1), precise(0.1)), 0);
+}
+
+// Particles that fit nothing spread out within a set. All that they match then is in the map by chance.
+TEST(RegainEvidence, MatchesOfAFilterThatHasSpreadOutAreNone) {
+  RegainEvidence evidence;
+  for (int set = 0; set < 20; ++set) add_set(evidence, 12, 12, precise(0.05), true, precise(3));
   EXPECT_GE(evidence.log_false_alarms(precise(0.1), precise(0.1)), 0);
 }
 
