@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <list>
-#include <map>
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/median.hpp"
 #include "importers/points/canopy.hpp"
 #include "importers/points/canopy_terrain.hpp"
 #include "importers/points/las_catalogue.hpp"
+#include "importers/points/point_checks.hpp"
+#include "importers/points/recent_blocks.hpp"
 #include "pipeline/forest/canopy_model.hpp"
 #include "pipeline/forest/ground_filter.hpp"
 
@@ -22,40 +21,10 @@ namespace {
 constexpr std::int64_t kBlock = 256;  // cells; blocks lie on the grid, so no tiling changes a height
 constexpr double kHalo = 20;          // metres of points around a block
 constexpr double kGroundHalo = 3;     // squares of the ground filter around a block for finding the ground
-constexpr double kMinDensity = 0.25;  // returns per m2; below, ground cannot be recognised by its shape
-constexpr std::size_t kKeptBlocks = 256;
-// Metres between the ground of the laser and a terrain model: more than the errors of both; surely another
-// datum.
-constexpr double kUsualOffset = 1, kMaxOffset = 10;
 // Memory of the points of a block, in units of --memory: surveys stay far below it.
 constexpr std::int64_t kMemoryTimes = 4;
 // Cells of the grid: the work is bounded by the size of the input. A survey has .01 to 20 cells per point.
 constexpr double kMinCells = 1e8, kCellsPerPoint = 2000;
-
-/// Returns the common CRS of all files.
-Crs crs_of(const std::vector<LasHeader>& headers, const std::string& asked, const LasBox& box,
-           std::vector<std::string>& warnings) {
-  if (!asked.empty()) return asked == "local" ? Crs::local() : Crs::from_text(asked);
-  for (const LasHeader& header : headers)
-    if (header.crs.has_value() != headers[0].crs.has_value() ||
-        (header.crs && !header.crs->same_as(*headers[0].crs)))
-      throw Error(
-          ErrorCode::input,
-          fmt::format("the files are in different coordinate reference systems: {} and {}",
-                      headers[0].crs ? headers[0].crs->id() : "none", header.crs ? header.crs->id() : "none"),
-          header.path, "pass --crs if one of them is wrong; else reproject them (las2las, pdal)");
-  if (headers[0].crs) return *headers[0].crs;
-  if (std::abs(box.left) <= 360 && std::abs(box.right) <= 360 && std::abs(box.low) <= 90 &&
-      std::abs(box.high) <= 90 && box.right - box.left < 1 && box.high - box.low < 1)
-    throw Error(ErrorCode::input, "the points seem to be in degrees, but trees are found in metres",
-                headers[0].path,
-                "reproject them (las2las -target_utm, pdal); or pass --crs local if they are metres");
-  warnings.push_back(
-      headers[0].path +
-      ": it names no coordinate reference system that is known; its coordinates are taken as metres: "
-      "pass --crs");
-  return Crs::local();
-}
 
 class PointCanopy final : public ImportedCanopy {
  public:
@@ -63,7 +32,7 @@ class PointCanopy final : public ImportedCanopy {
       : import_(import), catalogue_(import.las, import.memory_bytes / 2) {
     name_ = import.name.empty() ? std::filesystem::path(import.las[0]).filename().string() : import.name;
     check_points();
-    grid_.where.crs = crs_of(catalogue_.headers(), import.crs, catalogue_.box(), warnings_);
+    grid_.where.crs = crs_of_points(catalogue_.headers(), import.crs, catalogue_.box(), warnings_);
     const Crs& crs = grid_.where.crs;
     if (crs.kind() == CrsKind::geographic)
       throw Error(ErrorCode::input,
@@ -75,7 +44,7 @@ class PointCanopy final : public ImportedCanopy {
     if (!import.dtm.empty())
       open_terrain();
     else if (catalogue_.ground_points() == 0)
-      check_unclassified();
+      check_density(catalogue_, unit_, import.las[0], warnings_);
     read_area();
   }
 
@@ -197,23 +166,6 @@ class PointCanopy final : public ImportedCanopy {
                                       catalogue_.all_read() ? "" : "at least ", out));
   }
 
-  void check_unclassified() {
-    const LasBox& box = catalogue_.box();
-    const double width = (box.right - box.left) * unit_, height = (box.high - box.low) * unit_;
-    if (!(static_cast<double>(catalogue_.points()) > kMinDensity * width * height) ||
-        !(std::min(width, height) > 20))
-      throw Error(
-          ErrorCode::input,
-          "no point is classified as ground (class 2), and the points are too few to find it: heights of "
-          "trees need the ground",
-          import_.las[0],
-          "classify it first (pdal ground, lasground), or make rasters and pass --dsm and --dtm");
-    warnings_.push_back(
-        import_.las[0] +
-        ": no point is classified as ground (class 2): the ground is found by its shape (Axelsson "
-        "2000), which confuses low dense canopy with steps of the terrain");
-  }
-
   void open_terrain() {
     CanopyImport terrain = import_;
     terrain.memory_bytes /= 4;
@@ -222,66 +174,8 @@ class PointCanopy final : public ImportedCanopy {
       warnings_.push_back(import_.dtm[0] +
                           ": the terrain model does not cover all points: where it ends, no heights are "
                           "known and no trees are found");
-    if (import_.inspect) compare_with_terrain();
-  }
-
-  /// Compares returns of the ground with the terrain model in squares spread over the survey.
-  void compare_with_terrain() {
-    const double offset = median_above_terrain();
-    if (std::isnan(offset)) return;
-    const std::string what =
-        fmt::format("the {} of the laser lie {:.1f} m {} the terrain model in the median",
-                    catalogue_.ground_points() > 0 ? "ground points" : "lowest points", std::abs(offset),
-                    offset > 0 ? "above" : "below");
-    const char* const hint =
-        "is one of them above the ellipsoid and the other above the sea, or in feet? transform it (gdalwarp, "
-        "pdal filters.reprojection with vertical CRSs)";
-    if (std::abs(offset) > kMaxOffset) throw Error(ErrorCode::input, what, import_.dtm[0], hint);
-    if (std::abs(offset) > kUsualOffset && catalogue_.ground_points() > 0)
-      warnings_.push_back(
-          fmt::format("{}: {}: heights of trees are that much wrong; {}", import_.dtm[0], what, hint));
-  }
-
-  /// Returns the median height of ground points, or of the lowest point of each square of 5 m, above the
-  /// terrain model; NaN if there are too few.
-  double median_above_terrain() const {
-    constexpr int kSquares = 4;              // on each side
-    constexpr double kSide = 40, kCell = 5;  // metres
-    constexpr std::size_t kMinPoints = 20;
-    const bool classified = catalogue_.ground_points() > 0;
-    const Georeference& where = grid_.where;
-    std::vector<double> above;
-    for (int i = 0; i < kSquares * kSquares; ++i) {
-      const auto middle = [](int k, std::int64_t count) {
-        return static_cast<std::int64_t>((k + 0.5) / kSquares * static_cast<double>(count));
-      };
-      const auto half = static_cast<std::int64_t>(kSide / 2 / (where.dx * unit_));
-      const Window window{middle(i % kSquares, grid_.columns) - half, middle(i / kSquares, grid_.rows) - half,
-                          2 * half + 1, 2 * half + 1};
-      const Grid<float> ground = terrain_.at(window);
-      std::map<std::pair<std::int64_t, std::int64_t>, double> lowest;
-      const auto first = [](std::int64_t k) { return static_cast<double>(k); };
-      catalogue_.visit(
-          {where.x(first(window.column)), where.y(first(window.end_row())),
-           where.x(first(window.end_column())), where.y(first(window.row))},
-          [&](const LasPoint& p) {
-            if (classified && p.classification != 2) return;
-            const auto c = std::llround(where.column(p.x)) - window.column,
-                       r = std::llround(where.row(p.y)) - window.row;
-            if (!ground.contains(c, r) || std::isnan(ground(c, r))) return;
-            const double height = p.z * height_unit_ - static_cast<double>(ground(c, r));
-            if (classified) {
-              above.push_back(height);
-              return;
-            }
-            const auto square = [](double v) { return static_cast<std::int64_t>(std::floor(v / kCell)); };
-            const auto [at, is_new] = lowest.try_emplace({square(p.x * unit_), square(p.y * unit_)}, height);
-            if (!is_new) at->second = std::min(at->second, height);
-          });
-      for (const auto& [square, height] : lowest) above.push_back(height);
-    }
-    if (above.size() < kMinPoints) return std::nan("");
-    return median(std::move(above));
+    if (import_.inspect)
+      compare_with_terrain({catalogue_, terrain_, grid_, unit_, height_unit_}, import_.dtm[0], warnings_);
   }
 
   void set_height_unit() {
@@ -323,37 +217,11 @@ class PointCanopy final : public ImportedCanopy {
   }
 
   std::shared_ptr<const pipeline::CanopyBlock> block_at(std::int64_t column, std::int64_t row) const {
-    const std::int64_t key = row * (1 << 24) + column;
-    {
-      const std::scoped_lock lock(mutex_);
-      for (auto it = blocks_.begin(); it != blocks_.end(); ++it)
-        if (it->first == key) {
-          blocks_.splice(blocks_.begin(), blocks_, it);
-          return it->second;
-        }
-    }
-    auto made = std::make_shared<const pipeline::CanopyBlock>(compute_block(column, row));
-    const std::scoped_lock lock(mutex_);
-    blocks_.emplace_front(key, made);
-    if (blocks_.size() > kKeptBlocks) blocks_.pop_back();
-    return made;
+    return blocks_.at(column, row, [&] { return compute_block(column, row); });
   }
 
   std::shared_ptr<const Grid<float>> ground_at(std::int64_t column, std::int64_t row) const {
-    const std::int64_t key = row * (1 << 24) + column;
-    {
-      const std::scoped_lock lock(mutex_);
-      for (auto it = grounds_.begin(); it != grounds_.end(); ++it)
-        if (it->first == key) {
-          grounds_.splice(grounds_.begin(), grounds_, it);
-          return it->second;
-        }
-    }
-    auto made = std::make_shared<const Grid<float>>(compute_ground(column, row));
-    const std::scoped_lock lock(mutex_);
-    grounds_.emplace_front(key, made);
-    if (grounds_.size() > kKeptBlocks) grounds_.pop_back();
-    return made;
+    return grounds_.at(column, row, [&] { return compute_ground(column, row); });
   }
 
   /// Returns the ground of a block, as compute_block() has it.
@@ -431,10 +299,8 @@ class PointCanopy final : public ImportedCanopy {
   double unit_ = 1, height_unit_ = 1, spacing_ = 1;
   std::vector<std::string> warnings_;
   std::string name_;
-  mutable std::mutex mutex_;
-  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const pipeline::CanopyBlock>>>
-      blocks_;  // most recently used first
-  mutable std::list<std::pair<std::int64_t, std::shared_ptr<const Grid<float>>>> grounds_;  // likewise
+  mutable RecentBlocks<pipeline::CanopyBlock> blocks_;
+  mutable RecentBlocks<Grid<float>> grounds_;
 };
 
 }  // namespace

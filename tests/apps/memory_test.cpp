@@ -179,5 +179,18 @@ TEST(Memory, OfMapsDoesNotGrowWithTheirLandmarks) {
   }
 }
 
+// Most of the memory is that of GDAL and other libraries, which a query of one landmark loads, too.
+TEST(Memory, OfAnImportIsLittleMoreThanItsLibraries) {
+  if (!kOwnMemory) GTEST_SKIP() << "a sanitizer keeps what was freed";
+  TempFolder folder;
+  const std::string map = folder / "map.gpkg";
+  const double import = peak_of(
+      {"-q", "import", rock_table(folder, 300'000), "-o", map, "--type", "rock", "--map-crs", "EPSG:32632"});
+  const double query = peak_of({"-q", "query", map, "--limit", "1"});
+  RecordProperty("megabytes", std::to_string(import) + " " + std::to_string(query));
+  EXPECT_GT(query, 20) << "MB";
+  EXPECT_LT(import, query + 27) << "MB; " << query << " for a query";
+}
+
 }  // namespace
 }  // namespace waymark::test

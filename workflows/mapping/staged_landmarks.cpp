@@ -26,9 +26,9 @@ constexpr std::size_t kBatch = 1000;                       // landmarks that are
 constexpr std::size_t kPiece = 32;                         // landmarks of a part that are stored together
 constexpr std::size_t kPart = 10'000;                      // landmarks of a part, unless there are many
 constexpr std::size_t kMaxParts = 256;                     // about; it bounds the open pieces
-constexpr std::size_t kInMemory = 4 * 1024 * 1024;         // bytes that need no file
+constexpr std::size_t kInMemory = 1024 * 1024;             // bytes that need no file
 constexpr std::size_t kBuckets = 256;                      // by the first byte of a hash
-constexpr std::size_t kBuffered = 2 * 1024 * 1024;         // bytes of all buckets
+constexpr std::size_t kBuffered = 1024 * 1024;             // bytes of all buckets
 constexpr std::uint32_t kBins = 65536, kBinWidth = 65536;  // of a Hilbert curve
 
 /// FNV-1a.
