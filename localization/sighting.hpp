@@ -25,6 +25,9 @@ struct PossibleType {
 struct LineExtent {
   double from = 0, to = 0;
   double centre = 0;  ///< m, of the hits: a turn of the line about it does not change their distances
+  /// Standard deviations, m at the centre and rad, by which a piece may deviate from the line of its wall.
+  /// Each sighting of the piece has the same deviation, so the noise does not include it.
+  double deviation_sd = 0, deviation_turn_sd = 0;
 };
 
 /// A sighting of one landmark: d in D of eq. 9. Bearings are radians from the sensor's x axis (forward) to

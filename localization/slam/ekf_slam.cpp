@@ -134,7 +134,8 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
                   e.by_landmark.transpose();
     near.push_back({l, expected, e, covariance, extent});
   };
-  for (const SlamState::Slot slot : state_.active()) look_at(landmark_by_slot_[slot]);
+  for (const SlamState::Slot slot : state_.active())
+    if (const std::size_t l = landmark_by_slot_[slot]; landmarks_[l].slot == slot) look_at(l);
   map_.near(sensor.at(), reach + map_.max_half_length(), [&](std::uint32_t i) {
     if (!landmarks_[i].slot && !landmarks_[i].gone) look_at(i);
   });
@@ -221,18 +222,11 @@ SlamState::Correction EkfSlam::correction(const SightingSet& seen, const SlamPai
   const SeenLandmark& s = seen.sightings[pair.sighting];
   if (!l.slot) {
     l.slot = state_.add(l.at, l.covariance);
-    if (l.line) state_.set_site(*l.slot, l.line->anchor, std::max(-l.line->from, l.line->to));
     landmark_by_slot_.resize(*l.slot + 1);
     landmark_by_slot_[*l.slot] = pair.landmark;
+    if (l.line) set_site(l);
   }
-  if (l.line) {
-    const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, *l.line, state_.at(*l.slot));
-    return {.slot = *l.slot,
-            .innovation = line_innovation(s, *l.line, e.value),
-            .by_pose = e.by_pose,
-            .by_landmark = e.by_landmark,
-            .noise = line_noise(s, *l.line) / l.noise_divisor};
-  }
+  if (l.line) return line_correction(pair.landmark, s, seen.robot_from_sensor);
   const ExpectedSighting e = expect(state_.pose(), seen.robot_from_sensor, state_.at(*l.slot));
   SlamState::Correction c{.slot = *l.slot,
                           .innovation = innovation(s, e.value),

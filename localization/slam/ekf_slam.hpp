@@ -92,6 +92,9 @@ class EkfSlam final : public Localizer {
   void add(const SeenLandmark& seen, const Pose2& mount);
   void set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) const;
   void add_line(const SeenLandmark& seen, const Pose2& mount);
+  SlamState::Correction line_correction(std::size_t landmark, const SeenLandmark& seen, const Pose2& mount);
+  const LinePiece& find_piece(std::size_t landmark, const LinePiece& now, const Eigen::Matrix2d& covariance);
+  void set_site(const SlamLandmark& landmark);
   bool continues_line(const SeenLandmark& piece, const SightingSet& seen) const;
   void see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor);
   void add(const BearingStarts::Start& start, const SightingSet& seen);

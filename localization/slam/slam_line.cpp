@@ -19,6 +19,11 @@ Eigen::Vector2d normal_at_turn(const SlamLine& line, double turn) {
 
 }  // namespace
 
+double deviation_correlation(const LinePiece& a, const LinePiece& b) {
+  const double shared = std::min(a.to, b.to) - std::max(a.from, b.from);
+  return shared > 0 ? shared / std::sqrt(a.length() * b.length()) : 0;
+}
+
 SlamLine slam_line(const MapLandmark& landmark, const LineFeatures& features) {
   return {.anchor = landmark.at,
           .normal = landmark.normal,
@@ -63,6 +68,22 @@ Eigen::Matrix2d line_noise(const SeenLandmark& seen, const SlamLine& line) {
   Eigen::Matrix2d noise;
   noise << distance, both, both, turn;
   return noise;
+}
+
+LinePiece sighted_piece(const SlamLine& line, const Eigen::Vector2d& state, const LineExtent& seen,
+                        const Eigen::Vector2d& sensor) {
+  const double foot = left_of_normal(normal_at_turn(line, state[1])).dot(sensor - line.anchor);
+  return {foot + seen.from, foot + seen.to};
+}
+
+PieceDeviation piece_deviation(const LineExtent& seen, const LinePiece& piece, const LinePiece& now) {
+  PieceDeviation all;
+  const double foot = now.from - seen.from;
+  all.by_deviation << 1, foot - piece.middle(), 0, 1;
+  all.covariance =
+      Eigen::Vector2d(seen.deviation_sd * seen.deviation_sd, seen.deviation_turn_sd * seen.deviation_turn_sd)
+          .asDiagonal();
+  return all;
 }
 
 LineExtent extent_from_foot(const SlamLine& line, const Eigen::Vector2d& state,

@@ -2,10 +2,25 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstddef>
+#include <vector>
 #include "localization/filters/measurement.hpp"
 #include "localization/identification/map_landmark.hpp"
 #include "localization/sighting.hpp"
 namespace waymark::localization {
+
+/// A piece of a line that was sighted. Its deviation from the line is the same in each sighting of it: two
+/// unknowns, m at its middle and rad, as a sighting measures them.
+struct LinePiece {
+  double from = 0, to = 0;  ///< m from the anchor, to the left of the normal
+  std::size_t slot = 0;     ///< of the deviation, in SlamState
+
+  double middle() const { return (from + to) / 2; }
+  double length() const { return to - from; }
+};
+
+/// Returns the correlation of the mean deviations of two pieces of a line whose deviations along it are
+/// white: the part that they share.
+double deviation_correlation(const LinePiece& a, const LinePiece& b);
 
 /// Frame of a straight line, such as a wall, near which SLAM knows it by two numbers: metres from the anchor
 /// along the normal, and radians by which the normal is turned to the left of `normal`. The position along
@@ -16,6 +31,7 @@ struct SlamLine {
   double from = 0, to = 0;    ///< ends of what was seen, m from the anchor, to the left of the normal
   std::size_t direction = 0;  ///< feature of its type that is the direction of the normal
   std::size_t length = 0;     ///< feature of its type that is the length
+  std::vector<LinePiece> pieces = {};  ///< sighted, those seen last at the end
 };
 
 /// Returns the frame of a line of the map, with its middle as the anchor.
@@ -37,6 +53,18 @@ Eigen::Vector2d line_innovation(const SeenLandmark& seen, const SlamLine& line,
 /// Returns the noise of distance and direction, which are correlated: the distance is that of the foot of the
 /// sensor, and a turn of the line about the centre of the piece moves the foot.
 Eigen::Matrix2d line_noise(const SeenLandmark& seen, const SlamLine& line);
+
+/// Returns the piece of a line that is sighted from `sensor`.
+LinePiece sighted_piece(const SlamLine& line, const Eigen::Vector2d& state, const LineExtent& seen,
+                        const Eigen::Vector2d& sensor);
+
+/// What the deviation of a piece adds to a sighting.
+struct PieceDeviation {
+  Eigen::Matrix2d by_deviation;  ///< derivative of the sighting
+  Eigen::Matrix2d covariance;    ///< of the deviation
+};
+/// Returns it for a sighting of `now`, which deviates like `piece`.
+PieceDeviation piece_deviation(const LineExtent& seen, const LinePiece& piece, const LinePiece& now);
 
 /// Returns the ends of a line from the foot of the sensor on it, m to the left of the normal.
 LineExtent extent_from_foot(const SlamLine& line, const Eigen::Vector2d& state,

@@ -203,6 +203,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
   landmark_by_slot_.clear();
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
     SlamLandmark& l = landmarks_[i];
+    if (l.line) l.line->pieces.clear();
     if (l.was_mapped) {  // as in the map: what was learnt while lost belongs to other landmarks
       set_as_mapped(l, map_[i]);
       l.log_odds = std::max(l.log_odds, log_odds(l.quality));

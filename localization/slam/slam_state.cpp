@@ -54,6 +54,16 @@ void SlamState::predict(const BodyMotion& motion) {
   pose_ = robot.pose;
 }
 
+// Returns the covariance of rows of the state with an innovation.
+template <int Rows>
+Eigen::Matrix<double, Rows, 2> SlamState::with_innovation(Index first_row, const Correction& of) const {
+  Eigen::Matrix<double, Rows, 2> with =
+      paa_.block<Rows, 3>(first_row, 0) * of.by_pose.transpose() +
+      paa_.block<Rows, 2>(first_row, row(of.slot)) * of.by_landmark.transpose();
+  if (of.deviation) with += paa_.block<Rows, 2>(first_row, row(*of.deviation)) * of.by_deviation.transpose();
+  return with;
+}
+
 double SlamState::joint_squares(std::span<const Correction> corrections) const {
   if (corrections.empty()) return 0;
   const Index m = 2 * static_cast<Index>(corrections.size());
@@ -66,10 +76,8 @@ double SlamState::joint_squares(std::span<const Correction> corrections) const {
     for (Index j = 0; j < m; j += 2) {
       const Correction& b = corrections[static_cast<std::size_t>(j / 2)];
       s.block<2, 2>(i, j) +=
-          a.by_pose * (paa_.block<3, 3>(0, 0) * b.by_pose.transpose() +
-                       paa_.block<3, 2>(0, row(b.slot)) * b.by_landmark.transpose()) +
-          a.by_landmark * (paa_.block<2, 3>(row(a.slot), 0) * b.by_pose.transpose() +
-                           paa_.block<2, 2>(row(a.slot), row(b.slot)) * b.by_landmark.transpose());
+          a.by_pose * with_innovation<3>(0, b) + a.by_landmark * with_innovation<2>(row(a.slot), b);
+      if (a.deviation) s.block<2, 2>(i, j) += a.by_deviation * with_innovation<2>(row(*a.deviation), b);
     }
   }
   const Cholesky root((s + s.transpose()) / 2);
@@ -104,7 +112,10 @@ void SlamState::update(std::span<const Correction> corrections) {
   if (corrections.empty()) return;
   const bool has_passive = pbb_.rows() > 0;
   if (has_passive)
-    for (const Correction& c : corrections) add_column(c.slot);
+    for (const Correction& c : corrections) {
+      add_column(c.slot);
+      if (c.deviation) add_column(*c.deviation);
+    }
   const Index n = paa_.rows(), m = 2 * static_cast<Index>(corrections.size());
   Eigen::MatrixXd ph(n, m), h_phi(m, phi_.cols()), s = Eigen::MatrixXd::Zero(m, m);
   Eigen::VectorXd v(m);
@@ -113,9 +124,13 @@ void SlamState::update(std::span<const Correction> corrections) {
     const Index l = row(c.slot);
     ph.middleCols<2>(k).noalias() = paa_.leftCols<3>() * c.by_pose.transpose();
     ph.middleCols<2>(k).noalias() += paa_.middleCols<2>(l) * c.by_landmark.transpose();
+    if (c.deviation)
+      ph.middleCols<2>(k).noalias() += paa_.middleCols<2>(row(*c.deviation)) * c.by_deviation.transpose();
     if (has_passive) {
       h_phi.middleRows<2>(k).noalias() = c.by_pose * phi_.topRows<3>();
       h_phi.middleRows<2>(k).noalias() += c.by_landmark * phi_.middleRows<2>(l);
+      if (c.deviation)
+        h_phi.middleRows<2>(k).noalias() += c.by_deviation * phi_.middleRows<2>(row(*c.deviation));
     }
     s.block<2, 2>(k, k) = c.noise;
     v.segment<2>(k) = c.innovation;
@@ -123,6 +138,7 @@ void SlamState::update(std::span<const Correction> corrections) {
   for (Index k = 0; k < m; k += 2) {
     const Correction& c = corrections[static_cast<std::size_t>(k / 2)];
     s.middleRows<2>(k) += c.by_pose * ph.topRows<3>() + c.by_landmark * ph.middleRows<2>(row(c.slot));
+    if (c.deviation) s.middleRows<2>(k) += c.by_deviation * ph.middleRows<2>(row(*c.deviation));
   }
   const Cholesky root((s + s.transpose()) / 2);
   if (!root.positive_definite()) return;  // not positive definite: skip the update
@@ -166,6 +182,22 @@ SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix<do
   phi_.conservativeResize(n + 2, Eigen::NoChange);
   phi_.bottomRows<2>() = passive;
   return append(at);
+}
+
+SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose,
+                               const Eigen::Matrix2d& own, Slot deviation,
+                               const Eigen::Matrix2d& by_deviation) {
+  const Index n = paa_.rows();
+  const Index from = row(deviation);
+  const Slot slot = add(at, by_pose, own);
+  const Eigen::Matrix<double, 2, Eigen::Dynamic> more = by_deviation * paa_.middleRows<2>(from);
+  const Eigen::Matrix2d both = more.leftCols<3>() * by_pose.transpose();
+  const Eigen::Matrix2d squares = by_deviation * paa_.block<2, 2>(from, from) * by_deviation.transpose();
+  paa_.block(n, 0, 2, n) += more.leftCols(n);
+  paa_.block(0, n, n, 2) += more.leftCols(n).transpose();
+  paa_.bottomRightCorner<2, 2>() += both + both.transpose() + squares;
+  phi_.bottomRows<2>() += by_deviation * phi_.middleRows<2>(from);
+  return slot;
 }
 
 SlamState::Slot SlamState::add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance) {

@@ -40,6 +40,9 @@ class SlamState {
     Eigen::Vector2d innovation;
     Eigen::Matrix<double, 2, 3> by_pose;
     Eigen::Matrix2d by_landmark, noise;
+    /// Another two numbers that the sighting depends on: the deviation of a piece of wall from its line.
+    std::optional<Slot> deviation = {};
+    Eigen::Matrix2d by_deviation = Eigen::Matrix2d::Zero();
   };
   /// Returns the squared Mahalanobis distance of all innovations together; infinite if they have none.
   double joint_squares(std::span<const Correction> corrections) const;
@@ -49,6 +52,9 @@ class SlamState {
   /// Adds an active landmark measured from the robot. `by_pose`: its Jacobian with respect to the pose;
   /// `own`: the rest of its covariance.
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose, const Eigen::Matrix2d& own);
+  /// Adds one that also depends on a slot added since the last focus().
+  Slot add(const Eigen::Vector2d& at, const Eigen::Matrix<double, 2, 3>& by_pose, const Eigen::Matrix2d& own,
+           Slot deviation, const Eigen::Matrix2d& by_deviation);
   /// Adds an active landmark independent of the state.
   Slot add(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance);
   /// Sets where a landmark lies whose numbers are no position, and how far it extends from there, m.
@@ -64,6 +70,8 @@ class SlamState {
   Eigen::MatrixXd full_covariance(std::vector<Slot>& order) const;
 
  private:
+  template <int Rows>
+  Eigen::Matrix<double, Rows, 2> with_innovation(Eigen::Index first_row, const Correction& of) const;
   Eigen::Index row(Slot slot) const { return 3 + 2 * static_cast<Eigen::Index>(index_[slot]); }
   Slot append(const Eigen::Vector2d& at);
   void add_column(Slot slot);

@@ -6,6 +6,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <algorithm>
+#include <optional>
 
 #include "core/random.hpp"
 
@@ -43,10 +44,12 @@ struct FullFilter {
   }
 
   void add(Slot slot, const Eigen::Vector2d& landmark, const Eigen::Matrix<double, 2, 3>& by_pose,
-           const Eigen::Matrix2d& own) {
+           const Eigen::Matrix2d& own, std::optional<Slot> deviation = {},
+           const Eigen::Matrix2d& by_deviation = Eigen::Matrix2d::Zero()) {
     Eigen::MatrixXd g = Eigen::MatrixXd::Zero(p.rows() + 2, p.rows());
     g.topRows(p.rows()).setIdentity();
     g.bottomLeftCorner<2, 3>() = by_pose;
+    if (deviation) g.block<2, 2>(p.rows(), row(*deviation)) = by_deviation;
     p = (g * p * g.transpose()).eval();
     p.bottomRightCorner<2, 2>() += own;
     slots.push_back(slot), at.push_back(landmark);
@@ -69,6 +72,7 @@ struct FullFilter {
       const SlamState::Correction& c = corrections[static_cast<std::size_t>(k / 2)];
       h.block<2, 3>(k, 0) = c.by_pose;
       h.block<2, 2>(k, row(c.slot)) = c.by_landmark;
+      if (c.deviation) h.block<2, 2>(k, row(*c.deviation)) = c.by_deviation;
       r.block<2, 2>(k, k) = c.noise;
       v.segment<2>(k) = c.innovation;
     }
@@ -109,7 +113,13 @@ TEST(SlamState, IsTheFullFilterForAnySequenceOfCalls) {
         Eigen::Matrix<double, 2, 3> by_pose = random_matrix(2, 3, random);
         if (random.bernoulli(0.5)) by_pose.setZero();
         const Eigen::Matrix2d own = random_covariance(random);
-        twin.add(state.add(at, by_pose, own), at, by_pose, own);
+        const Slot deviation = state.add(at, by_pose, own);
+        twin.add(deviation, at, by_pose, own);
+        if (random.bernoulli(0.3)) {
+          const Eigen::Matrix2d by_deviation = random_matrix(2, 2, random);
+          twin.add(state.add(at, by_pose, own, deviation, by_deviation), at, by_pose, own, deviation,
+                   by_deviation);
+        }
       }
       if (random.bernoulli(0.15)) {
         state.focus(seed % 5 == 0 ? 0 : random.uniform(0, 15));
@@ -124,10 +134,15 @@ TEST(SlamState, IsTheFullFilterForAnySequenceOfCalls) {
       std::vector<SlamState::Correction> corrections;
       for (const Slot slot : active)
         for (int k = 0; k < 2; ++k)
-          if (random.bernoulli(0.2))
+          if (random.bernoulli(0.2)) {
             corrections.push_back({slot, 0.1 * Eigen::Vector2d(random_matrix(2, 1, random)),
                                    Eigen::Matrix<double, 2, 3>(random_matrix(2, 3, random)),
                                    Eigen::Matrix2d(random_matrix(2, 2, random)), random_covariance(random)});
+            const Slot other = active[random.uniform_index(active.size())];
+            if (other == slot || random.bernoulli(0.5)) continue;
+            corrections.back().deviation = other;
+            corrections.back().by_deviation = random_matrix(2, 2, random);
+          }
       if (corrections.empty()) continue;
       state.update(corrections), twin.update(corrections);
     }
