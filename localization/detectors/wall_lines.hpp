@@ -37,9 +37,12 @@ struct WallLine {
 /// 10 us per scan of 180 beams.
 std::vector<WallLine> find_wall_lines(const LaserScan& scan, const WallLineOptions& options = {});
 
+/// Limits within which pieces are of one wall: its deviations from a straight line, rad and m.
+constexpr double kMaxPieceTurn = 0.04, kMaxPieceOffset = 0.08;
+
 /// Joins the pieces that lie on one line, whatever is between them: a wall with doors is one line. Pieces are
 /// of one line within `max_turn` rad and `max_offset` m. Longest first; of the hits their moments are used.
-std::vector<WallLine> join_collinear(std::vector<WallLine> walls, double max_turn = 0.04,
-                                     double max_offset = 0.08);
+std::vector<WallLine> join_collinear(std::vector<WallLine> walls, double max_turn = kMaxPieceTurn,
+                                     double max_offset = kMaxPieceOffset);
 
 }  // namespace waymark::localization

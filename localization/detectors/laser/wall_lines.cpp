@@ -14,7 +14,6 @@ constexpr double kLineConfidence = 0.7;               // sides of cars and shelv
 constexpr double kMinWall = 1;                        // m
 constexpr std::size_t kMaxWalls = 6;                  // the longest of a scan; more exceed joint association
 constexpr double kWallSd = 0.02, kWallTurnSd = 0.01;  // m, rad: of walls that are not perfectly straight
-constexpr double kMaxOffset = 0.08, kMaxTurn = 0.04;  // m, rad: between pieces of one wall
 
 SeenLandmark sighting_of_wall(const WallLine& wall, const LineType& type) {
   // The scan runs to the left, so that the far end of a wall seen from its front is on the right.
@@ -26,9 +25,9 @@ SeenLandmark sighting_of_wall(const WallLine& wall, const LineType& type) {
                                         .centre_variance = wall.centre_variance + kWallSd * kWallSd,
                                         .angle_variance = wall.angle_variance + kWallTurnSd * kWallTurnSd},
                                        type, kLineConfidence);
-  // All deviations up to those limits count as equally probable.
-  seen.extent->deviation_sd = kMaxOffset / std::sqrt(3.0);
-  seen.extent->deviation_turn_sd = kMaxTurn / std::sqrt(3.0);
+  // All deviations within the limits of a wall count as equally probable.
+  seen.extent->deviation_sd = kMaxPieceOffset / std::sqrt(3.0);
+  seen.extent->deviation_turn_sd = kMaxPieceTurn / std::sqrt(3.0);
   return seen;
 }
 
@@ -44,8 +43,8 @@ void register_laser_wall_lines(DetectorTable& detectors) {
                    return [line = line_type(types, "wall")](const LaserScan& scan) {
                      SightingSet set{scan.robot_from_sensor, {}};
                      if (!line) return set;
-                     std::vector<WallLine> walls = join_collinear(
-                         find_wall_lines(scan, {.min_length = kMinWall}), kMaxTurn, kMaxOffset);
+                     std::vector<WallLine> walls =
+                         join_collinear(find_wall_lines(scan, {.min_length = kMinWall}));
                      if (walls.size() > kMaxWalls) walls.resize(kMaxWalls);
                      for (const WallLine& wall : walls)
                        set.sightings.push_back(sighting_of_wall(wall, *line));

@@ -39,7 +39,7 @@ TEST_F(ImportRules, ADrawingInMetresNeedsACrs) {
   const Outcome said = import(dxf, "plan.dxf", {"--rules", "floor_plan", "--map-crs", "local"});
   ASSERT_EQ(said.code, 0) << said.err;
   EXPECT_EQ(landmarks("wall").size(), 4U);      // two lines with two faces
-  EXPECT_EQ(landmarks("wall_end").size(), 8U);  // of which each end has two, too
+  EXPECT_EQ(landmarks("wall_end").size(), 8U);  // each end has two of them, too
   ASSERT_EQ(landmarks("pillar").size(), 1U);
   EXPECT_NEAR(landmarks("pillar")[0]["x"], 3, 0.01);
 }
