@@ -164,7 +164,7 @@ double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, doubl
   map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
-    if (std::ranges::binary_search(hidden_, i)) return;
+    if (is_left_out(l, identification_) || std::ranges::binary_search(hidden_, i)) return;
     const Eigen::Vector2d d = l.at - sensor;
     if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < min_cosine * d.norm()) return;
     if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
@@ -189,7 +189,7 @@ std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const P
                                                                          std::uint32_t landmark,
                                                                          const KnownFeatures& seen) const {
   const MapLandmark& l = (*map_)[landmark];
-  if (!p.known && !p.seen.may_be(l.type)) return {};
+  if (!p.known && (!p.seen.may_be(l.type) || is_left_out(l, identification_))) return {};
   FeatureComparison features;
   if (p.seen.type == l.type)
     features = compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance);

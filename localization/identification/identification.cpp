@@ -52,7 +52,7 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
   const double half = std::min(sigmas * std::hypot(turn, noise * seen.bearing_sd), 3.2);
   const double along = sensor.yaw + seen.bearing.value_or(0);
   const auto keep = [&](std::uint32_t i) {
-    if (seen.may_be(map[i].type)) found.push_back(i);
+    if (seen.may_be(map[i].type) && !is_left_out(map[i], options)) found.push_back(i);
   };
   const auto at = [&](double range) -> Eigen::Vector2d {
     return sensor.at() + range * Eigen::Vector2d(std::cos(along), std::sin(along));

@@ -158,6 +158,13 @@ inline double existence_prior(const MapLandmark& landmark, const IdentificationO
   return options.quality == "existence" && options.quality_floor < 1 ? landmark.quality : 1;
 }
 
+/// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it;
+/// false unless `quality=existence`. Beside true landmarks a doubtful one is taken for an unmapped object
+/// more often than it is seen.
+inline bool is_left_out(const MapLandmark& landmark, const IdentificationOptions& options) {
+  return landmark.outweighed && options.quality == "existence" && options.quality_floor < 1;
+}
+
 /// Returns the headings of the robot that the angles of a sighting measure if it shows a landmark.
 std::vector<AngleFix> headings_from_angles(const SeenLandmark& seen, const Pose2& robot_from_sensor,
                                            const MapLandmark& landmark, double robot_yaw,

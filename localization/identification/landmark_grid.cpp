@@ -44,6 +44,21 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
     at_[to] = {landmarks[i].at.x(), landmarks[i].at.y()};
     by_key_.emplace(landmarks[i].key, to);
   }
+  mark_outweighed();
+}
+
+void LandmarkGrid::mark_outweighed() {
+  constexpr double kLikely = 0.5;
+  for (MapLandmark& l : landmarks_) {
+    l.outweighed = false;
+    if (l.quality >= kLikely || l.is_line()) continue;
+    double likely = 0, doubtful = 0;
+    near(l.at, kOutweighedRadius, [&](std::uint32_t i) {
+      const MapLandmark& other = landmarks_[i];
+      if (other.type == l.type) (other.quality < kLikely ? doubtful : likely) += other.quality;
+    });
+    l.outweighed = likely > doubtful;
+  }
 }
 
 std::optional<std::uint32_t> LandmarkGrid::find(LandmarkKey key) const {

@@ -9,9 +9,16 @@
 #include "localization/identification/map_landmark.hpp"
 namespace waymark::localization {
 
+/// Landmarks within this distance, m, decide together which doubtful ones are left out: about what a robot
+/// sees at once.
+inline constexpr double kOutweighedRadius = 30;
+
 /// Landmarks in cells of a regular grid, in memory, for the many small queries of a particle filter: about
 /// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 10 M
 /// landmarks/s.
+///
+/// Marks as outweighed the landmarks that rather do not exist (probability below 0.5) where the others of
+/// their type within kOutweighedRadius are expected to be most of those that exist. Lines never are.
 class LandmarkGrid {
  public:
   LandmarkGrid() = default;
@@ -60,6 +67,8 @@ class LandmarkGrid {
     return {low > 0 ? static_cast<std::int64_t>(low) : 0,
             high < static_cast<double>(count - 1) ? static_cast<std::int64_t>(high) : count - 1};
   }
+
+  void mark_outweighed();
 
   std::vector<MapLandmark> landmarks_;
   std::vector<XY> at_;                ///< positions of the landmarks, contiguous

@@ -91,6 +91,7 @@ double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& 
   double count = 0;
   map.near(sensor.at(), clutter_.view_range(), [&](std::uint32_t i) {
     if (!any_type_ && std::ranges::find(seen_types_, map[i].type) == seen_types_.end()) return;
+    if (is_left_out(map[i], options_)) return;
     const Eigen::Vector2d to = map[i].at - sensor.at();
     const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
     if (std::abs(bearing) <= clutter_.view_bearing()) count += existence_prior(map[i], options_);

@@ -20,7 +20,9 @@ const LandmarkGrid& LandmarkWindow::landmarks_near(const Eigen::Vector2d& at, do
   if (loaded_.isEmpty() || !loaded_.contains(asked)) {
     const Eigen::Vector2d more = Eigen::Vector2d::Constant(std::max(margin_, reach / 4));
     loaded_ = Eigen::AlignedBox2d(asked.min() - more, asked.max() + more);
-    grid_ = LandmarkGrid(source_(loaded_));
+    // Neighbours outside decide as well which landmarks at the edge are left out.
+    const Eigen::Vector2d around = Eigen::Vector2d::Constant(kOutweighedRadius);
+    grid_ = LandmarkGrid(source_({loaded_.min() - around, loaded_.max() + around}));
   }
   return grid_;
 }

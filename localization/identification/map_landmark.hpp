@@ -26,6 +26,8 @@ struct MapLandmark {
   /// For the sensor (eq. 8), (0, 1]; kUnassessedQuality if its observations say nothing, 1 if the map has no
   /// counts at all.
   double paper_quality = 1;
+  /// It rather does not exist, and others nearby are expected to be most of those that do (LandmarkGrid).
+  bool outweighed = false;
   KnownFeatures features;
   double diameter = 0;  ///< m, of its body; 0: unknown
   /// Of a line, such as a wall: unit vector across it to the side from which it is seen. 0: it is a point.
