@@ -153,6 +153,10 @@ double SightingScore::quality(std::uint32_t landmark) const {
              : 1;
 }
 
+bool SightingScore::is_left_out(std::uint32_t landmark) const {
+  return !paper_ && localization::is_left_out((*map_)[landmark], identification_);
+}
+
 double SightingScore::log_unseen(std::uint32_t landmark) const {
   return std::log1p(-options_.detection * quality(landmark));
 }
@@ -164,7 +168,7 @@ double SightingScore::unseen(const Eigen::Vector2d& sensor, double cosine, doubl
   map_->near(sensor, options_.view_range, [&](std::uint32_t i) {
     const MapLandmark& l = (*map_)[i];
     if (!types_.empty() && std::ranges::find(types_, l.type) == types_.end()) return;
-    if (is_left_out(l, identification_) || std::ranges::binary_search(hidden_, i)) return;
+    if (is_left_out(i) || std::ranges::binary_search(hidden_, i)) return;
     const Eigen::Vector2d d = l.at - sensor;
     if (options_.view_angle < 6.28 && d.x() * cosine + d.y() * sine < min_cosine * d.norm()) return;
     if (std::ranges::find(matched, i) == matched.end()) sum += log_unseen(i);
@@ -189,7 +193,7 @@ std::optional<SightingScore::PoseFreeTerms> SightingScore::feature_terms(const P
                                                                          std::uint32_t landmark,
                                                                          const KnownFeatures& seen) const {
   const MapLandmark& l = (*map_)[landmark];
-  if (!p.known && (!p.seen.may_be(l.type) || is_left_out(l, identification_))) return {};
+  if (!p.known && (!p.seen.may_be(l.type) || is_left_out(landmark))) return {};
   FeatureComparison features;
   if (p.seen.type == l.type)
     features = compare_features(*scales_, l.type, seen, l.features, identification_.feature_tolerance);

@@ -115,6 +115,7 @@ class SightingScore {
   Best best(const Prepared& p, const View<double>& view, bool in_cloud, double sensor_yaw) const;
   void score_lanes(const Pose2* poses, double* fit) const;
   double quality(std::uint32_t landmark) const;
+  bool is_left_out(std::uint32_t landmark) const;
   Eigen::Matrix2d map_covariance(std::uint32_t landmark) const;
   double log_unseen(std::uint32_t landmark) const;
   double unseen(const Eigen::Vector2d& sensor, double cosine, double sine,

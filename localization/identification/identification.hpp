@@ -159,10 +159,11 @@ inline double existence_prior(const MapLandmark& landmark, const IdentificationO
 }
 
 /// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it;
-/// false unless `quality=existence`. Beside true landmarks a doubtful one is taken for an unmapped object
-/// more often than it is seen.
+/// false unless `quality=existence`, and with `distance=paper`. Beside true landmarks a doubtful one is taken
+/// for an unmapped object more often than it is seen.
 inline bool is_left_out(const MapLandmark& landmark, const IdentificationOptions& options) {
-  return landmark.outweighed && options.quality == "existence" && options.quality_floor < 1;
+  return landmark.outweighed && options.distance != "paper" && options.quality == "existence" &&
+         options.quality_floor < 1;
 }
 
 /// Returns the headings of the robot that the angles of a sighting measure if it shows a landmark.
