@@ -17,8 +17,8 @@ inline constexpr double kOutweighedRadius = 30;
 /// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 10 M
 /// landmarks/s.
 ///
-/// Marks as outweighed the landmarks that rather do not exist (probability below 0.5) where the others of
-/// their type within kOutweighedRadius are expected to be most of those that exist. Lines never are.
+/// Marks as outweighed the landmarks that rather do not exist (probability below 0.5), but no lines. Others
+/// of their type within kOutweighedRadius must be expected to be most of those that exist.
 class LandmarkGrid {
  public:
   LandmarkGrid() = default;
