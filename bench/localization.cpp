@@ -50,6 +50,17 @@ localization::LandmarkGrid map_of(std::size_t landmarks, bool vague = false) {
   return localization::LandmarkGrid(std::move(all));
 }
 
+/// A tenth of the landmarks is doubtful, or none: their neighbours decide whether they are left out.
+void build_grid(benchmark::State& state) {
+  const auto count = static_cast<std::size_t>(state.range(0));
+  auto all = scatter_landmarks(count, std::sqrt(static_cast<double>(count) / kDensity), 1);
+  if (state.range(1) != 0)
+    for (std::size_t i = 0; i < all.size(); i += 10) all[i].quality = 0.3;
+  for (auto _ : state) benchmark::DoNotOptimize(localization::LandmarkGrid(all));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(build_grid)->Args({50000, 0})->Args({50000, 1})->Unit(benchmark::kMillisecond);
+
 /// Likelihoods of particles within a metre of each other, features compared.
 void weight(benchmark::State& state) {
   const localization::LandmarkGrid map = map_of(static_cast<std::size_t>(state.range(0)));
@@ -200,11 +211,12 @@ void cold_window(benchmark::State& state) {
   Random random(1, "places");
   std::vector<double> times;
   std::size_t landmarks = 0;
+  const double side = 70 + 2 * localization::kOutweighedRadius;  // m
   for (auto _ : state) {
-    const double x = random.uniform(0, file.side - 70), y = random.uniform(0, file.side - 70);
+    const double x = random.uniform(0, file.side - side), y = random.uniform(0, file.side - side);
     const auto begun = std::chrono::steady_clock::now();
     std::vector<localization::MapLandmark> all;
-    for (const Landmark& l : store.query({.box = geodb::MapQuery::Box{x, y, x + 70, y + 70}}))
+    for (const Landmark& l : store.query({.box = geodb::MapQuery::Box{x, y, x + side, y + side}}))
       all.push_back(localization::map_landmark(l, store.types()[l.type], frame));
     const localization::LandmarkGrid grid(std::move(all));
     landmarks += grid.size();

@@ -29,6 +29,7 @@ void LandmarkWatch::add(const localization::PoseEstimate& robot,
   const double half_view = std::min(sensor.view / 2 * kRadiansPerDegree - kEdge, std::numbers::pi);
   map_.near(robot.pose.at(), kInner * sensor.range, [&](std::uint32_t i) {
     const localization::MapLandmark& landmark = map_[i];
+    if (landmark.outweighed) return;  // no filter looks for it
     const Eigen::Vector2d to = landmark.at - robot.pose.at();
     if (sensor.view < 360 &&
         std::abs(localization::wrap_angle(std::atan2(to.y(), to.x()) - robot.pose.yaw)) > half_view)

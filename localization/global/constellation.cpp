@@ -18,14 +18,13 @@ constexpr std::size_t kSample = 400;  // landmarks to estimate how rare a featur
 // true neighbour in triangles, and counts as one that may match by chance. Those that rather do not exist are
 // left out, unless half of the landmarks that exist are expected among them.
 double min_existence(const std::vector<MapLandmark>& landmarks, const IdentificationOptions& options) {
-  constexpr double kLikely = 0.5;
   double all = 0, likely = 0;
   for (const MapLandmark& l : landmarks) {
     const double exists = existence_prior(l, options);
     all += exists;
-    if (exists >= kLikely) likely += exists;
+    if (exists >= kLikelyExistence) likely += exists;
   }
-  return likely > all / 2 ? kLikely : 0;
+  return likely > all / 2 ? kLikelyExistence : 0;
 }
 
 std::vector<LandmarkPosition> planar_positions(const std::vector<MapLandmark>& landmarks) {

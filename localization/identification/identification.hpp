@@ -50,6 +50,8 @@ struct IdentificationOptions {
   /// a landmark of quality q (eq. 8) is divided by max(q, quality_floor) (section 4.3).
   std::string quality = "existence";
   double quality_floor = 0.1;  ///< 1: quality is not used
+  /// Leave out landmarks that others outweigh. SLAM uses them: it decides itself what exists. No option
+  bool leave_out_outweighed = true;
 
   void describe(OptionVisitor& option);
   /// Returns the association that `auto` stands for, otherwise the given one.
@@ -159,11 +161,11 @@ inline double existence_prior(const MapLandmark& landmark, const IdentificationO
 }
 
 /// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it;
-/// false unless `quality=existence`, and with `distance=paper`. Beside true landmarks a doubtful one is taken
+/// false unless `quality=existence` and with `distance=paper`. Beside true landmarks a doubtful one is taken
 /// for an unmapped object more often than it is seen.
 inline bool is_left_out(const MapLandmark& landmark, const IdentificationOptions& options) {
-  return landmark.outweighed && options.distance != "paper" && options.quality == "existence" &&
-         options.quality_floor < 1;
+  return landmark.outweighed && options.leave_out_outweighed && options.distance != "paper" &&
+         options.quality == "existence" && options.quality_floor < 1;
 }
 
 /// Returns the headings of the robot that the angles of a sighting measure if it shows a landmark.

@@ -48,14 +48,13 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
 }
 
 void LandmarkGrid::mark_outweighed() {
-  constexpr double kLikely = 0.5;
   for (MapLandmark& l : landmarks_) {
     l.outweighed = false;
-    if (l.quality >= kLikely || l.is_line()) continue;
+    if (l.quality >= kLikelyExistence || !l.has_confidence || l.is_line()) continue;
     double likely = 0, doubtful = 0;
     near(l.at, kOutweighedRadius, [&](std::uint32_t i) {
       const MapLandmark& other = landmarks_[i];
-      if (other.type == l.type) (other.quality < kLikely ? doubtful : likely) += other.quality;
+      if (other.type == l.type) (other.quality < kLikelyExistence ? doubtful : likely) += other.quality;
     });
     l.outweighed = likely > doubtful;
   }

@@ -14,11 +14,11 @@ namespace waymark::localization {
 inline constexpr double kOutweighedRadius = 30;
 
 /// Landmarks in cells of a regular grid, in memory, for the many small queries of a particle filter: about
-/// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 10 M
-/// landmarks/s.
+/// 40 ns each, whatever the size of the map. Immutable; several threads may query. Builds at 4 M
+/// landmarks/s; each doubtful one costs a visit of its neighbours within kOutweighedRadius.
 ///
-/// Marks as outweighed the landmarks that rather do not exist (probability below 0.5), but no lines. Others
-/// of their type within kOutweighedRadius must be expected to be most of those that exist.
+/// Marks as outweighed the landmarks whose confidence is below kLikelyExistence, but no lines. Others of
+/// their type within kOutweighedRadius must be expected to be most of those that exist.
 class LandmarkGrid {
  public:
   LandmarkGrid() = default;

@@ -75,8 +75,8 @@ MapLandmark map_landmark(const Landmark& landmark, const LandmarkType& type, con
   const double quality = (sensor ? quality_for(*sensor, type, landmark) : quality_of(type, landmark))
                              .value_or(landmark.quality.visible > 0 ? kUnassessedQuality : 1);
   robots.paper_quality = std::clamp(quality, 1e-3, 1.0);
-  robots.quality =
-      std::isfinite(landmark.confidence) ? std::clamp(landmark.confidence, 1e-3, 1.0) : robots.paper_quality;
+  robots.has_confidence = std::isfinite(landmark.confidence);
+  robots.quality = robots.has_confidence ? std::clamp(landmark.confidence, 1e-3, 1.0) : robots.paper_quality;
   FeatureSet features = landmark.features;
   rotate_axes(features, type.features, rotation);
   robots.features = known_features(features);

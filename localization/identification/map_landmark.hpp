@@ -14,6 +14,9 @@ using LandmarkKey = std::uint64_t;
 /// Returns the key of a uid.
 LandmarkKey landmark_key(std::string_view uid);
 
+/// Probability of existence below which a landmark rather does not exist.
+inline constexpr double kLikelyExistence = 0.5;
+
 /// A landmark as localization uses it: in the plane of the map frame, metres. Covariance and directions are
 /// along east and north of the frame, not along the axes of the map's CRS.
 struct MapLandmark {
@@ -23,6 +26,7 @@ struct MapLandmark {
   TypeId type = 0;
   /// Probability that it exists, (0, 1]: the map's confidence, or its quality if it has none. 1 without both.
   double quality = 1;
+  bool has_confidence = true;  ///< `quality` is the map's confidence
   /// For the sensor (eq. 8), (0, 1]; kUnassessedQuality if its observations say nothing, 1 if the map has no
   /// counts at all.
   double paper_quality = 1;

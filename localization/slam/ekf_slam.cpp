@@ -33,6 +33,7 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
   if (!map_.empty()) {
     IdentificationOptions identification = options_.identification;
     identification.certainty = std::max(identification.certainty, kCertainty);
+    identification.leave_out_outweighed = false;
     matcher_.emplace(LandmarkWindow(map_), scales_, identification);
   }
   for (const MapLandmark& known : map_.landmarks()) {

@@ -104,6 +104,15 @@ inline SeenLandmark seen_at(double range, double bearing) {
   return s;
 }
 
+/// Returns the landmarks in a box, as a query of a map does.
+inline std::vector<MapLandmark> landmarks_in(const Eigen::AlignedBox2d& box,
+                                             const std::vector<MapLandmark>& all) {
+  std::vector<MapLandmark> inside;
+  for (const MapLandmark& l : all)
+    if (box.contains(l.at)) inside.push_back(l);
+  return inside;
+}
+
 inline MapLandmark landmark_at(double x, double y, LandmarkKey key) {
   MapLandmark l;
   l.key = key;

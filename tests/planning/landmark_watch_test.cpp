@@ -35,6 +35,17 @@ TEST(LandmarkWatch, MissesOfALandmarkInViewAreCountedAsLogOdds) {
   EXPECT_GT(std::log(9) + 8 * std::log(0.6), -2.2);
 }
 
+TEST(LandmarkWatch, DoubtfulLandmarksThatFiltersLeaveOutAreNotGone) {
+  localization::MapLandmark likely, doubtful;
+  likely.key = 1, likely.at = {0, 5}, likely.quality = 0.9;
+  doubtful.key = 2, doubtful.at = {5, 0}, doubtful.quality = 0.4;
+  LandmarkWatch beside(localization::LandmarkGrid({likely, doubtful}), kAhead);
+  LandmarkWatch alone(localization::LandmarkGrid({doubtful}), kAhead);
+  for (int i = 0; i < 50; ++i) beside.add(pose(), {}), alone.add(pose(), {});
+  EXPECT_THAT(beside.gone(), IsEmpty());
+  EXPECT_THAT(alone.gone(), ElementsAre(2u));
+}
+
 TEST(LandmarkWatch, AMatchProvesThatItIsThere) {
   LandmarkWatch watch(two_landmarks(), kAhead);
   localization::Match match;

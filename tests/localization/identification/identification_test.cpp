@@ -98,10 +98,7 @@ TEST(LandmarkWindow, AnswersAsTheWholeMapDoes) {
   LandmarkWindow window(
       [&](const Eigen::AlignedBox2d& box) {
         ++reads;
-        std::vector<MapLandmark> inside;
-        for (const MapLandmark& l : all)
-          if (box.contains(l.at)) inside.push_back(l);
-        return inside;
+        return landmarks_in(box, all);
       },
       30);
   for (int i = 0; i < 200; ++i) {

@@ -20,6 +20,7 @@ std::vector<MapLandmark> scatter_doubtful_landmarks(std::size_t count, double si
   for (MapLandmark& l : all) {
     l.type = static_cast<TypeId>(random.uniform_index(2));
     l.quality = random.bernoulli(0.1) ? 0.5 : random.log_uniform(0.02, 1);
+    l.has_confidence = random.bernoulli(0.9);
     if (random.bernoulli(0.1)) l.normal = {1, 0}, l.half_length = 2;
     l.outweighed = random.bernoulli(0.5);  // of an earlier map: must not stay
   }
@@ -28,7 +29,7 @@ std::vector<MapLandmark> scatter_doubtful_landmarks(std::size_t count, double si
 
 /// Slow twin: every landmark is compared with every other.
 bool is_outweighed(const MapLandmark& l, const std::vector<MapLandmark>& all) {
-  if (l.quality >= 0.5 || l.is_line()) return false;
+  if (l.quality >= 0.5 || !l.has_confidence || l.is_line()) return false;
   double likely = 0, doubtful = 0;
   for (const MapLandmark& other : all)
     if (other.type == l.type && (other.at - l.at).norm() <= kOutweighedRadius)
@@ -55,14 +56,7 @@ TEST(LandmarkWindow, MarksTheSameLandmarksAsTheWholeMap) {
   std::map<LandmarkKey, bool> marks;
   const LandmarkGrid whole(all);
   for (const MapLandmark& l : whole.landmarks()) marks[l.key] = l.outweighed;
-  LandmarkWindow window(
-      [&](const Eigen::AlignedBox2d& box) {
-        std::vector<MapLandmark> inside;
-        for (const MapLandmark& l : all)
-          if (box.contains(l.at)) inside.push_back(l);
-        return inside;
-      },
-      5);
+  LandmarkWindow window([&](const Eigen::AlignedBox2d& box) { return landmarks_in(box, all); }, 5);
   for (int i = 0; i < 100; ++i) {
     const Eigen::Vector2d at(-250 + 5 * i, 40);
     const LandmarkGrid& near = window.landmarks_near(at, 20);

@@ -40,5 +40,20 @@ TEST(MapLandmark, OfAPolarMapHasCovarianceAndDirectionAlongEastAndNorth) {
   EXPECT_EQ(same.features.value[orientation], 0.3);
 }
 
+// Eq. 8 says how well a landmark is known, not whether it exists: without a confidence none is left out.
+TEST(MapLandmark, OnlyAConfidenceSaysThatALandmarkRatherDoesNotExist) {
+  Landmark landmark;
+  landmark.quality.visible = 4, landmark.quality.seen = 1;
+  landmark.confidence = std::nan("");
+  const LocalFrame local(Crs::local(), {});
+  const MapLandmark observed = map_landmark(landmark, {}, local);
+  EXPECT_LT(observed.quality, kLikelyExistence);
+  EXPECT_FALSE(observed.has_confidence);
+  landmark.confidence = 0.3;
+  const MapLandmark doubtful = map_landmark(landmark, {}, local);
+  EXPECT_EQ(doubtful.quality, 0.3);
+  EXPECT_TRUE(doubtful.has_confidence);
+}
+
 }  // namespace
 }  // namespace waymark::test

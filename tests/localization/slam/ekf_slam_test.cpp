@@ -220,6 +220,24 @@ TEST(EkfSlam, LandmarksHiddenByTerrainAreNotExpected) {
   EXPECT_LT(odds(open), log_odds(0.9) - 0.3);
 }
 
+// Filters would leave it out beside likely ones; then it would count as missing, and start again as another.
+TEST(EkfSlam, ADoubtfulLandmarkThatIsSeenIsConfirmed) {
+  MapLandmark doubtful = landmark_at(5, 0, 3);
+  doubtful.quality = 0.3;
+  std::vector<MapLandmark> map{landmark_at(4, 3, 1), landmark_at(4, -3, 2), doubtful};
+  for (MapLandmark& l : map) l.covariance = Eigen::Matrix2d::Identity() * 1e-4;
+  EkfSlam slam(known_pose({}), LandmarkGrid(map), {}, made_drive_options());
+  const double aside = std::atan2(3, 4);
+  for (int i = 0; i < 10; ++i) slam.update({{}, {seen_at(5, aside), seen_at(5, -aside), seen_at(5, 0)}});
+  ASSERT_EQ(slam.landmarks().size(), 3u);
+  for (const SlamLandmark& l : slam.landmarks()) {
+    EXPECT_GT(l.matches, 0) << l.key.value_or(0);
+    if (l.key == 3u) {
+      EXPECT_GT(l.log_odds, log_odds(0.3));
+    }
+  }
+}
+
 TEST(EkfSlam, SignaturesKeepNeighboursApart) {
   TypeRegistry types;
   register_landmark_types(types);
