@@ -98,4 +98,20 @@ std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkG
   return hidden;
 }
 
+bool RangeProfile::reaches(double bearing, double half_width, double range) const {
+  const double step = std::abs(angle_step);
+  if (ranges.empty() || !(step > 0)) return false;
+  const double last = step * static_cast<double>(ranges.size() - 1);  // rad, from the rightmost beam
+  const double middle = first_angle + (angle_step > 0 ? last : -last) / 2;
+  const double offset = wrap_angle(bearing - middle) + last / 2, width = std::max(half_width, step / 2);
+  if (!(offset - width >= -step / 2 && offset + width <= last + step / 2)) return false;
+  const auto from = static_cast<std::size_t>(std::max(0.0, std::ceil((offset - width) / step)));
+  const auto to = static_cast<std::size_t>(std::min(last / step, std::floor((offset + width) / step)));
+  for (std::size_t i = from; i <= to; ++i) {
+    const float seen = ranges[angle_step > 0 ? i : ranges.size() - 1 - i];
+    if (seen > 0 && static_cast<double>(seen) < range) return false;
+  }
+  return true;
+}
+
 }  // namespace waymark::localization

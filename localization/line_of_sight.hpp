@@ -40,6 +40,16 @@ LineOfSight terrain_line_of_sight(const Terrain& terrain, const LineOfSightOptio
 bool is_hidden(const Pose2& sensor, const Eigen::Matrix2d& covariance, const Eigen::Vector2d& landmark,
                const LineOfSight& visible);
 
+/// Ranges of a line scan by direction: what stands before a landmark hides it.
+struct RangeProfile {
+  double first_angle = 0, angle_step = 0;  ///< rad, left of the sensor's x axis
+  std::vector<float> ranges;               ///< m; not above 0 or not finite: no return
+
+  /// Returns whether all beams within `half_width` rad of a bearing, and the one nearest to it, reach `range`
+  /// metres. Beams without a return reach any range. False where the scan does not cover the directions.
+  bool reaches(double bearing, double half_width, double range) const;
+};
+
 /// Returns the landmarks within `range` metres of the sensor that it cannot see, ascending.
 std::vector<std::uint32_t> hidden_landmarks(const Pose2& sensor, const LandmarkGrid& map, double range,
                                             const LineOfSight& visible);

@@ -85,6 +85,8 @@ struct EarlierRange {
   LandmarkKey landmark = 0;
 };
 
+struct RangeProfile;
+
 /// Sightings of one sensor at one time. They belong to different landmarks.
 struct SightingSet {
   Pose2 robot_from_sensor;
@@ -92,6 +94,7 @@ struct SightingSet {
   std::vector<EarlierRange> earlier_ranges = {};  ///< for a PoseFinder only; the oldest first
   /// Of a panorama, from the robot's forward axis, for a PoseFinder only.
   std::shared_ptr<const HorizonProfile> horizon = {};
+  std::shared_ptr<const RangeProfile> ranges = {};  ///< of a level line scan; null: what hides is not known
 };
 
 inline bool SeenLandmark::is_valid() const {

@@ -8,6 +8,7 @@
 
 #include "core/error.hpp"
 #include "localization/detectors/merge_sightings.hpp"
+#include "localization/line_of_sight.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -153,6 +154,9 @@ LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetection
           with_features = options.features](const LaserScan& scan) {
     SightingSet all =
         without_intensities && scan.intensities.empty() ? without_intensities(scan) : detect(scan);
+    if (scan.roll == 0 && scan.pitch == 0)
+      all.ranges =
+          std::make_shared<const RangeProfile>(RangeProfile{scan.first_angle, scan.angle_step, scan.ranges});
     if (!with_features)
       for (SeenLandmark& s : all.sightings) {
         s.features = {};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/covariance.hpp"
+#include "localization/line_of_sight.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
 
@@ -15,6 +16,16 @@ constexpr double kRangeMargin =
     10;                             // m beyond the range of sightings in which landmarks are still considered
 constexpr double kCertainty = 0.9;  // of a pair with a landmark of the map: it is not revised
 constexpr double kLineGap = 1.5;    // m, a door: pieces of a line on both sides are of one landmark
+constexpr double kBeforeLandmark = 0.3;  // m: what stands nearer before a landmark may be the landmark
+
+// Returns whether the beams of a scan reach a landmark, wherever it is within two standard deviations of its
+// range and bearing.
+bool is_in_sight(const RangeProfile& ranges, const Eigen::Vector2d& range_bearing,
+                 const Eigen::Matrix2d& covariance) {
+  const double range_sd = std::sqrt(std::max(covariance(0, 0), 0.0)),
+               bearing_sd = std::sqrt(std::max(covariance(1, 1), 0.0));
+  return ranges.reaches(range_bearing[1], 2 * bearing_sd, range_bearing[0] - 2 * range_sd - kBeforeLandmark);
+}
 
 }  // namespace
 
@@ -122,10 +133,6 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
       e = expect(state_.pose(), seen.robot_from_sensor, position(l));
     }
     const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - sensor.yaw);
-    // Expects detections only within the range and view that the sensor has shown.
-    const bool expected = !landmark.line && range < 0.7 * std::min(options_.max_range, reach_) &&
-                          std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
-                          (!visible_ || visible_(sensor, position(l)));
     Eigen::Matrix2d covariance = e.by_pose * robot * e.by_pose.transpose();
     if (landmark.slot) {
       const Eigen::Matrix2d both = e.by_landmark * state_.cross(*landmark.slot) * e.by_pose.transpose();
@@ -133,6 +140,12 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
     }
     covariance += e.by_landmark * (landmark.slot ? state_.covariance(*landmark.slot) : landmark.covariance) *
                   e.by_landmark.transpose();
+    // Expects detections only within the range and view that the sensor has shown, and where nothing hides
+    // them. With a map nothing counts as hidden: what is expected also decides whether the robot is lost.
+    const bool expected = !landmark.line && range < 0.7 * std::min(options_.max_range, reach_) &&
+                          std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
+                          (!visible_ || visible_(sensor, position(l))) &&
+                          (!map_.empty() || !seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
     near.push_back({l, expected, e, covariance, extent});
   };
   for (const SlamState::Slot slot : state_.active())

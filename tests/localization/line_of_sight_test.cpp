@@ -178,5 +178,43 @@ TEST(LineOfSight, HiddenLandmarksAreNotExpectedByParticles) {
   EXPECT_NEAR(score({0, 4, 0}) - expects, -view.temper * std::log1p(-view.detection), 1e-9);
 }
 
+// Slow twin: all beams are compared, each by its own direction.
+TEST(RangeProfile, ReachesWhatNoBeamEndsBefore) {
+  int hidden = 0, free = 0, outside = 0;
+  for (std::uint64_t seed = 1; seed <= 3000; ++seed) {
+    Random random(seed, "beams");
+    RangeProfile scan{
+        random.uniform(-3, 3), random.uniform(0.01, 0.1) * (random.bernoulli(0.5) ? 1 : -1), {}};
+    const std::size_t beams = 2 + random.uniform_index(50);
+    for (std::size_t i = 0; i < beams; ++i)
+      scan.ranges.push_back(random.bernoulli(0.1)   ? 0
+                            : random.bernoulli(0.1) ? std::numeric_limits<float>::quiet_NaN()
+                                                    : static_cast<float>(random.uniform(1, 20)));
+    const double bearing = random.uniform(-3.1, 3.1), width = random.uniform(0.06, 0.3),
+                 range = random.uniform(0.5, 12), half = std::abs(scan.angle_step) / 2;
+    bool reaches = true, left = false, right = false;
+    for (std::size_t i = 0; i < beams; ++i) {
+      const double off = wrap_angle(scan.first_angle + scan.angle_step * static_cast<double>(i) - bearing);
+      left = left || (off >= width - half && off < 1.5);
+      right = right || (off <= half - width && off > -1.5);
+      if (std::abs(off) <= width && scan.ranges[i] > 0 && double(scan.ranges[i]) < range) reaches = false;
+    }
+    const bool covered = left && right;
+    ASSERT_EQ(scan.reaches(bearing, width, range), covered && reaches) << "seed " << seed;
+    ++(!covered ? outside : reaches ? free : hidden);
+  }
+  EXPECT_GT(hidden, 200);
+  EXPECT_GT(free, 50);
+  EXPECT_GT(outside, 200);
+}
+
+TEST(RangeProfile, TakesTheNearestBeamAndAnEmptyScanReachesNothing) {
+  const RangeProfile scan{-1, 0.5, {9, 9, 3, 9, 9}};
+  EXPECT_FALSE(scan.reaches(0.2, 0, 4));
+  EXPECT_TRUE(scan.reaches(0.3, 0, 4));
+  EXPECT_TRUE(scan.reaches(0.2, 0, 3));
+  EXPECT_FALSE(RangeProfile{}.reaches(0, 0, 1));
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -4,6 +4,7 @@
 #include <Eigen/Cholesky>
 
 #include "localization/filters/measurement.hpp"
+#include "localization/line_of_sight.hpp"
 #include "localization/slam/ekf_slam.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "localization/slam/signature.hpp"
@@ -236,6 +237,26 @@ TEST(EkfSlam, ADoubtfulLandmarkThatIsSeenIsConfirmed) {
       EXPECT_GT(l.log_odds, log_odds(0.3));
     }
   }
+}
+
+// Something stands before a landmark 4 m ahead that the filter found, or it is gone; two others stay in
+// sight.
+TEST(EkfSlam, WithoutAMapWhatBeamsDoNotReachIsNotExpected) {
+  const auto count_landmarks = [](const LandmarkGrid& map, float ahead) {
+    EkfSlam slam(known_pose({}), map, {}, made_drive_options());
+    SightingSet seen{{}, {seen_at(8, 0.5), seen_at(8, -0.5), seen_at(4, 0)}};
+    for (int i = 0; i < 20; ++i) slam.update(seen);
+    seen.sightings.pop_back();
+    RangeProfile beams{-1, 0.05, std::vector<float>(41, 0)};
+    for (int i = -2; i <= 2; ++i) beams.ranges[static_cast<std::size_t>(20 + i)] = ahead;
+    seen.ranges = std::make_shared<const RangeProfile>(beams);
+    for (int i = 0; i < 60; ++i) slam.update(seen);
+    return slam.landmarks().size();
+  };
+  EXPECT_EQ(count_landmarks({}, 2), 3u);
+  EXPECT_EQ(count_landmarks({}, 9), 2u);
+  EXPECT_EQ(count_landmarks({}, 0), 2u);  // no return
+  EXPECT_EQ(count_landmarks(LandmarkGrid({landmark_at(-50, 0, 1)}), 2), 2u + 1);
 }
 
 TEST(EkfSlam, SignaturesKeepNeighboursApart) {
