@@ -194,12 +194,14 @@ TEST(RangeProfile, ReachesWhatNoBeamEndsBefore) {
                  range = random.uniform(0.5, 12), half = std::abs(scan.angle_step) / 2;
     bool reaches = true, left = false, right = false;
     for (std::size_t i = 0; i < beams; ++i) {
-      const double off = wrap_angle(scan.first_angle + scan.angle_step * static_cast<double>(i) - bearing);
-      left = left || (off >= width - half && off < 1.5);
-      right = right || (off <= half - width && off > -1.5);
-      if (std::abs(off) <= width && scan.ranges[i] > 0 && double(scan.ranges[i]) < range) reaches = false;
+      const double beam = scan.first_angle + scan.angle_step * static_cast<double>(i);
+      left = left || std::abs(wrap_angle(beam - bearing - width)) <= half;
+      right = right || std::abs(wrap_angle(beam - bearing + width)) <= half;
+      if (std::abs(wrap_angle(beam - bearing)) <= width && scan.ranges[i] > 0 &&
+          double(scan.ranges[i]) < range)
+        reaches = false;
     }
-    const bool covered = left && right;
+    const bool covered = left && right;  // what a scan leaves open is wider than any of these views
     ASSERT_EQ(scan.reaches(bearing, width, range), covered && reaches) << "seed " << seed;
     ++(!covered ? outside : reaches ? free : hidden);
   }
