@@ -390,7 +390,7 @@ void EkfSlam::update_existence(std::span<const SlamCandidate> near, const std::v
   }
 }
 
-std::vector<SlamLandmark> EkfSlam::landmarks() {
+std::vector<SlamLandmark> EkfSlam::landmark_states() {
   focus();
   std::vector<SlamLandmark> all;
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
@@ -401,6 +401,11 @@ std::vector<SlamLandmark> EkfSlam::landmarks() {
     all.back().at = state_.at(*all.back().slot);
     all.back().covariance = state_.covariance(*all.back().slot);
   }
+  return all;
+}
+
+std::vector<SlamLandmark> EkfSlam::landmarks() {
+  std::vector<SlamLandmark> all = landmark_states();
   for (SlamLandmark& l : all)
     if (l.line) state_as_position(l);
   return all;

@@ -58,6 +58,12 @@ class EkfSlam final : public Localizer {
   /// Brings the state up to date and returns the landmarks. Includes those of the map that were not seen or
   /// are gone; omits removed ones that were in no map.
   std::vector<SlamLandmark> landmarks();
+  /// Returns the same, but lines with their two numbers in place of a position.
+  std::vector<SlamLandmark> landmark_states();
+  /// Returns the frame of a line; null for a point.
+  const SlamLine* line(std::size_t index) const {
+    return landmarks_[index].line ? &*landmarks_[index].line : nullptr;
+  }
   /// Returns the map's landmark of an index; null if it is in no map.
   const MapLandmark* prior(std::size_t index) const { return index < map_.size() ? &map_[index] : nullptr; }
   /// Returns the landmark index of each sighting of the last set, new ones included; `std::nullopt` for

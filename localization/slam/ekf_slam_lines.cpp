@@ -10,10 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxPieces = 8;  // of a line, with a deviation of their own
 
-bool deviates(const SeenLandmark& seen) {
-  return seen.extent->deviation_sd > 0 && seen.extent->deviation_turn_sd > 0;
-}
-
 }  // namespace
 
 void state_as_position(SlamLandmark& landmark) {
@@ -36,12 +32,9 @@ void EkfSlam::set_as_mapped(SlamLandmark& landmark, const MapLandmark& known) co
   landmark.at = known.at, landmark.covariance = known.covariance;
   const auto features = scales_.line(known.type);
   if (!features || !known.is_line()) return;
-  constexpr double kMinTurnVariance = 1e-6;  // rad^2: a map may state none
   landmark.line = slam_line(known, *features);
   landmark.at = Eigen::Vector2d::Zero();
-  landmark.covariance = Eigen::Vector2d(known.normal.dot(known.covariance * known.normal),
-                                        std::max(known.normal_variance, kMinTurnVariance))
-                            .asDiagonal();
+  landmark.covariance = line_covariance(known);
 }
 
 // The line and the deviation of its first piece depend on each other: their sum was measured.
@@ -55,7 +48,7 @@ void EkfSlam::add_line(const SeenLandmark& seen, const Pose2& mount) {
   const ExpectedSighting e = expect(state_.pose(), mount, *fresh.line, fresh.at);
   const Eigen::Matrix2d back = e.by_landmark.inverse();
   const Eigen::Matrix2d noise = back * line_noise(seen, *fresh.line) * back.transpose();
-  if (deviates(seen)) {
+  if (has_deviations(*seen.extent)) {
     const LinePiece now = sighted_piece(*fresh.line, fresh.at, *seen.extent, sensor.at());
     const PieceDeviation d = piece_deviation(*seen.extent, now, now);
     const LinePiece& piece = find_piece(index, now, d.covariance);
@@ -68,14 +61,11 @@ void EkfSlam::add_line(const SeenLandmark& seen, const Pose2& mount) {
   see_piece(fresh, seen, sensor);
 }
 
-// Returns the piece of a line that a sighted one deviates like, which is then the one seen last. A piece of
-// which less than half is shared says nothing about the other's deviation.
+// Returns the piece of a line that a sighted one deviates like, which is then the one seen last.
 const LinePiece& EkfSlam::find_piece(std::size_t landmark, const LinePiece& now,
                                      const Eigen::Matrix2d& covariance) {
   std::vector<LinePiece>& pieces = landmarks_[landmark].line->pieces;
-  const auto best =
-      std::ranges::max_element(pieces, {}, [&](const LinePiece& p) { return deviation_correlation(p, now); });
-  if (best != pieces.end() && deviation_correlation(*best, now) > 0.5) {
+  if (const auto best = localization::find_piece(pieces, now); best != pieces.end()) {
     std::rotate(best, best + 1, pieces.end());
     return pieces.back();
   }
@@ -100,7 +90,7 @@ SlamState::Correction EkfSlam::line_correction(std::size_t landmark, const SeenL
                           .by_pose = e.by_pose,
                           .by_landmark = e.by_landmark,
                           .noise = line_noise(seen, *l.line) / l.noise_divisor};
-  if (!deviates(seen)) return c;
+  if (!has_deviations(*seen.extent)) return c;
   const LinePiece now = sighted_piece(*l.line, state, *seen.extent, (state_.pose() * mount).at());
   const LinePiece& piece = find_piece(landmark, now, piece_deviation(*seen.extent, now, now).covariance);
   set_site(l);

@@ -48,8 +48,17 @@ StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to) {
   return {edge.root * e.value, edge.root * e.by_from, edge.root * e.by_to};
 }
 
-SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark) {
+SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark,
+                             const SlamLine* line, const Eigen::Vector2d& deviation) {
   SightingError e;
+  if (edge.kind == SightingKind::line) {
+    const ExpectedSighting expected = expect(pose, edge.robot_from_sensor, *line, landmark);
+    e.value = expected.value - edge.value;
+    if (edge.deviation) e.value += edge.by_deviation * deviation;
+    e.value[1] = wrap_angle(e.value[1]);
+    return {edge.root * e.value, edge.root * expected.by_pose, edge.root * expected.by_landmark,
+            edge.root * edge.by_deviation};
+  }
   if (edge.kind == SightingKind::position) {
     const Pose2& mount = edge.robot_from_sensor;
     const Seen by_robot = seen_from(pose, landmark), by_sensor = seen_from(mount, by_robot.value);
@@ -71,6 +80,13 @@ SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const 
   return {edge.root * e.value, edge.root * e.by_pose, edge.root * e.by_landmark};
 }
 
+SightingError sighting_error(const PoseGraph& graph, const SightingEdge& edge) {
+  const GraphLandmark& landmark = graph.landmarks[edge.landmark];
+  return sighting_error(
+      edge, graph.poses[edge.pose].at, landmark.at, landmark.line ? &*landmark.line : nullptr,
+      edge.deviation ? graph.deviations[*edge.deviation].at : Eigen::Vector2d(Eigen::Vector2d::Zero()));
+}
+
 Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose) {
   return prior.root *
          Eigen::Vector3d(pose.x - prior.at.x, pose.y - prior.at.y, wrap_angle(pose.yaw - prior.at.yaw));
@@ -80,15 +96,19 @@ Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& l
   return prior.root * (landmark - prior.at);
 }
 
+Eigen::Vector2d prior_error(const GraphDeviation& prior, const Eigen::Vector2d& deviation) {
+  return prior.root * deviation;
+}
+
 double chi2(const PoseGraph& graph) {
   double sum = 0;
   for (const StepEdge& e : graph.steps)
     sum += step_error(e, graph.poses[e.from].at, graph.poses[e.to].at).value.squaredNorm();
-  for (const SightingEdge& e : graph.sightings)
-    sum += sighting_error(e, graph.poses[e.pose].at, graph.landmarks[e.landmark].at).value.squaredNorm();
+  for (const SightingEdge& e : graph.sightings) sum += sighting_error(graph, e).value.squaredNorm();
   for (const PosePrior& p : graph.pose_priors) sum += prior_error(p, graph.poses[p.pose].at).squaredNorm();
   for (const LandmarkPrior& p : graph.landmark_priors)
     sum += prior_error(p, graph.landmarks[p.landmark].at).squaredNorm();
+  for (const GraphDeviation& d : graph.deviations) sum += prior_error(d, d.at).squaredNorm();
   return sum;
 }
 
@@ -100,7 +120,8 @@ Eigen::Matrix2d information_root(const Eigen::Matrix2d& information) {
 }
 
 std::size_t residual_count(const PoseGraph& graph) {
-  std::size_t count = 3 * (graph.steps.size() + graph.pose_priors.size()) + 2 * graph.landmark_priors.size();
+  std::size_t count = 3 * (graph.steps.size() + graph.pose_priors.size()) +
+                      2 * (graph.landmark_priors.size() + graph.deviations.size());
   for (const SightingEdge& e : graph.sightings)
     count += e.kind == SightingKind::bearing || e.kind == SightingKind::range ? 1 : 2;
   return count;
@@ -113,7 +134,8 @@ bool has_gauge(const PoseGraph& graph) {
 
 std::size_t unknown_count(const PoseGraph& graph) {
   const auto fixed = has_gauge(graph) ? std::ranges::count(graph.poses, true, &GraphPose::fixed) : 1;
-  return 3 * (graph.poses.size() - static_cast<std::size_t>(fixed)) + 2 * graph.landmarks.size();
+  return 3 * (graph.poses.size() - static_cast<std::size_t>(fixed)) +
+         2 * (graph.landmarks.size() + graph.deviations.size());
 }
 
 }  // namespace waymark::localization

@@ -2,9 +2,11 @@
 #pragma once
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 #include "localization/pose2.hpp"
+#include "localization/slam/slam_line.hpp"
 namespace waymark::localization {
 
 /// A pose of the robot in a graph.
@@ -21,6 +23,13 @@ struct GraphLandmark {
   std::int64_t id = 0;
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   bool given = false;
+  std::optional<SlamLine> line = {};  ///< of a line, whose two numbers are `at`
+};
+
+/// Deviation of a piece of a line, which each sighting of the piece shares. Expected to be 0.
+struct GraphDeviation {
+  Eigen::Vector2d at = Eigen::Vector2d::Zero();        ///< m and rad
+  Eigen::Matrix2d root = Eigen::Matrix2d::Identity();  ///< as of StepEdge
 };
 
 /// Relative motion between two poses, in the frame of the first. Information = root' root.
@@ -36,6 +45,7 @@ enum class SightingKind {
   range_bearing,  ///< m, rad to the left
   bearing,        ///< rad; the first of the two values is not used
   range,          ///< m; the second of the two values is not used
+  line,           ///< distance of a line, m, and direction of its normal, rad to the left
 };
 
 /// A sighting of a landmark from a pose.
@@ -46,6 +56,8 @@ struct SightingEdge {
   Eigen::Matrix2d root =
       Eigen::Matrix2d::Identity();  ///< as of StepEdge; a bearing or range uses its own entry
   Pose2 robot_from_sensor;
+  std::optional<std::size_t> deviation = {};  ///< of the piece of a line
+  Eigen::Matrix2d by_deviation = Eigen::Matrix2d::Zero();
 };
 
 /// Prior knowledge of a pose or a landmark.
@@ -69,6 +81,7 @@ struct PoseGraph {
   std::vector<SightingEdge> sightings;
   std::vector<PosePrior> pose_priors;
   std::vector<LandmarkPrior> landmark_priors;
+  std::vector<GraphDeviation> deviations = {};
 };
 
 /// Whitened difference between measured and expected, and its Jacobians. Unused rows are 0.
@@ -80,12 +93,19 @@ struct SightingError {
   Eigen::Vector2d value;
   Eigen::Matrix<double, 2, 3> by_pose;
   Eigen::Matrix2d by_landmark;
+  Eigen::Matrix2d by_deviation = Eigen::Matrix2d::Zero();
 };
 StepError step_error(const StepEdge& edge, const Pose2& from, const Pose2& to);
-SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark);
+/// `line`: of a sighting of one; `landmark` then holds its two numbers.
+SightingError sighting_error(const SightingEdge& edge, const Pose2& pose, const Eigen::Vector2d& landmark,
+                             const SlamLine* line = nullptr,
+                             const Eigen::Vector2d& deviation = Eigen::Vector2d::Zero());
+/// Returns the error at the present pose, landmark and deviation of the graph.
+SightingError sighting_error(const PoseGraph& graph, const SightingEdge& edge);
 /// Returns the whitened error of a prior; its Jacobian with respect to the pose is the root.
 Eigen::Vector3d prior_error(const PosePrior& prior, const Pose2& pose);
 Eigen::Vector2d prior_error(const LandmarkPrior& prior, const Eigen::Vector2d& landmark);
+Eigen::Vector2d prior_error(const GraphDeviation& prior, const Eigen::Vector2d& deviation);
 
 /// Returns the sum of all squared errors at the present poses and landmarks.
 double chi2(const PoseGraph& graph);

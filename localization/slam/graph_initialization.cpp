@@ -21,7 +21,9 @@ void check_indices(const PoseGraph& graph) {
   for (const StepEdge& e : graph.steps)
     sound &= e.from < poses && e.to < poses && e.from != e.to && e.step.finite() && e.root.allFinite();
   for (const SightingEdge& e : graph.sightings)
-    sound &= e.pose < poses && e.landmark < landmarks && e.value.allFinite() && e.root.allFinite();
+    sound &= e.pose < poses && e.landmark < landmarks && e.value.allFinite() && e.root.allFinite() &&
+             (e.kind == SightingKind::line) == graph.landmarks[e.landmark].line.has_value() &&
+             (!e.deviation || (*e.deviation < graph.deviations.size() && e.kind == SightingKind::line));
   for (const PosePrior& p : graph.pose_priors) sound &= p.pose < poses && p.at.finite() && p.root.allFinite();
   for (const LandmarkPrior& p : graph.landmark_priors)
     sound &= p.landmark < landmarks && p.at.allFinite() && p.root.allFinite();
@@ -47,7 +49,7 @@ struct Neighbours {
 }  // namespace
 
 std::optional<Eigen::Vector2d> landmark_position(const SightingEdge& edge, const Pose2& pose) {
-  if (edge.kind == SightingKind::bearing || edge.kind == SightingKind::range) return {};
+  if (edge.kind != SightingKind::position && edge.kind != SightingKind::range_bearing) return {};
   const Pose2 sensor = pose * edge.robot_from_sensor;
   const Eigen::Vector2d there =
       edge.kind == SightingKind::position
@@ -55,6 +57,14 @@ std::optional<Eigen::Vector2d> landmark_position(const SightingEdge& edge, const
           : Eigen::Vector2d(edge.value[0] *
                             Eigen::Vector2d(std::cos(edge.value[1]), std::sin(edge.value[1])));
   return (sensor * Pose2{there.x(), there.y(), 0}).at();
+}
+
+Eigen::Vector2d line_state(const SightingEdge& edge, const Pose2& pose, const SlamLine& line) {
+  const Pose2 sensor = pose * edge.robot_from_sensor;
+  const double angle = sensor.yaw + edge.value[1];
+  const Eigen::Vector2d normal(std::cos(angle), std::sin(angle));
+  return {normal.dot(sensor.at() - line.anchor) - edge.value[0],
+          wrap_angle(angle - std::atan2(line.normal.y(), line.normal.x()))};
 }
 
 std::vector<InitializationStep> initialization_order(const PoseGraph& graph) {

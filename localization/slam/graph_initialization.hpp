@@ -8,8 +8,12 @@ namespace waymark::localization {
 /// first pose. Throws Error{input} naming the first id that is not, or std::out_of_range.
 void check_connected(const PoseGraph& graph);
 
-/// Returns the position of a landmark by one sighting; `std::nullopt` for a bearing or a range.
+/// Returns the position of a landmark by one sighting; `std::nullopt` for a bearing, a
+/// range or a line.
 std::optional<Eigen::Vector2d> landmark_position(const SightingEdge& edge, const Pose2& pose);
+
+/// Returns the two numbers of a line by one sighting of it.
+Eigen::Vector2d line_state(const SightingEdge& edge, const Pose2& pose, const SlamLine& line);
 
 /// A pose to initialise, and the edge that does so.
 struct InitializationStep {

@@ -24,21 +24,25 @@ double weight(const std::string& kernel, double width, double square) {
 class Information {
  public:
   explicit Information(const PoseGraph& graph)
-      : pose_row_(graph.poses.size()), landmark_row_(graph.landmarks.size()) {
+      : pose_row_(graph.poses.size()),
+        landmark_row_(graph.landmarks.size()),
+        deviation_row_(graph.deviations.size()) {
     const bool held = has_gauge(graph);
     for (std::size_t i = 0; i < pose_row_.size(); ++i) {
       const bool fixed = graph.poses[i].fixed || (i == 0 && !held);
       pose_row_[i] = fixed ? -1 : rows_;
       if (!fixed) rows_ += 3;
     }
-    for (Index& row : landmark_row_) {
-      row = rows_;
-      rows_ += 2;
-    }
+    for (std::vector<Index>* all : {&landmark_row_, &deviation_row_})
+      for (Index& row : *all) {
+        row = rows_;
+        rows_ += 2;
+      }
   }
 
   Index pose(std::size_t i) const { return pose_row_[i]; }
   Index landmark(std::size_t i) const { return landmark_row_[i]; }
+  Index deviation(std::size_t i) const { return deviation_row_[i]; }
   Index rows() const { return rows_; }
 
   /// Adds a'b at (row, column), rows from pose() or landmark(); does nothing if one is fixed.
@@ -54,6 +58,10 @@ class Information {
   void tie(Index row_a, const A& a, Index row_b, const B& b, double scale) {
     add(row_a, row_a, a, a, scale);
     add(row_b, row_b, b, b, scale);
+    link(row_a, a, row_b, b, scale);
+  }
+  template <class A, class B>
+  void link(Index row_a, const A& a, Index row_b, const B& b, double scale) {
     add(row_a, row_b, a, b, scale);
     add(row_b, row_a, b, a, scale);
   }
@@ -65,7 +73,7 @@ class Information {
   }
 
  private:
-  std::vector<Index> pose_row_, landmark_row_;
+  std::vector<Index> pose_row_, landmark_row_, deviation_row_;
   std::vector<Eigen::Triplet<double>> entries_;
   Index rows_ = 0;
 };
@@ -130,9 +138,19 @@ GraphMarginals graph_marginals(const PoseGraph& graph, const std::string& kernel
                     loop ? weight(kernel, kernel_width, error.value.squaredNorm()) : 1);
   }
   for (const SightingEdge& e : graph.sightings) {
-    const SightingError error = sighting_error(e, graph.poses[e.pose].at, graph.landmarks[e.landmark].at);
-    information.tie(information.pose(e.pose), error.by_pose, information.landmark(e.landmark),
-                    error.by_landmark, weight(kernel, kernel_width, error.value.squaredNorm()));
+    const SightingError error = sighting_error(graph, e);
+    const double scale = weight(kernel, kernel_width, error.value.squaredNorm());
+    const Index pose = information.pose(e.pose), landmark = information.landmark(e.landmark);
+    information.tie(pose, error.by_pose, landmark, error.by_landmark, scale);
+    if (!e.deviation) continue;
+    const Index deviation = information.deviation(*e.deviation);
+    information.add(deviation, deviation, error.by_deviation, error.by_deviation, scale);
+    information.link(pose, error.by_pose, deviation, error.by_deviation, scale);
+    information.link(landmark, error.by_landmark, deviation, error.by_deviation, scale);
+  }
+  for (std::size_t i = 0; i < graph.deviations.size(); ++i) {
+    const Eigen::Matrix2d& root = graph.deviations[i].root;
+    information.add(information.deviation(i), information.deviation(i), root, root, 1);
   }
   for (const PosePrior& p : graph.pose_priors)
     information.add(information.pose(p.pose), information.pose(p.pose), p.root, p.root, 1);

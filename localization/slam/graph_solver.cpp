@@ -40,9 +40,10 @@ class StepCost final : public ceres::SizedCostFunction<3, 3, 3> {
 
 class SightingCost final : public ceres::SizedCostFunction<2, 3, 2> {
  public:
-  explicit SightingCost(const SightingEdge& edge) : edge_(edge) {}
+  SightingCost(const SightingEdge& edge, const SlamLine* line) : edge_(edge), line_(line) {}
   bool Evaluate(Parameters p, double* residuals, double** jacobians) const override {
-    const SightingError e = sighting_error(edge_, pose_at(p[0]), Eigen::Map<const Eigen::Vector2d>(p[1]));
+    const SightingError e =
+        sighting_error(edge_, pose_at(p[0]), Eigen::Map<const Eigen::Vector2d>(p[1]), line_);
     Eigen::Map<Eigen::Vector2d>{residuals} = e.value;
     if (jacobians && jacobians[0]) Eigen::Map<RowMajor23>{jacobians[0]} = e.by_pose;
     if (jacobians && jacobians[1]) Eigen::Map<RowMajor2>{jacobians[1]} = e.by_landmark;
@@ -51,6 +52,25 @@ class SightingCost final : public ceres::SizedCostFunction<2, 3, 2> {
 
  private:
   const SightingEdge& edge_;
+  const SlamLine* line_;
+};
+
+class PieceCost final : public ceres::SizedCostFunction<2, 3, 2, 2> {
+ public:
+  PieceCost(const SightingEdge& edge, const SlamLine& line) : edge_(edge), line_(line) {}
+  bool Evaluate(Parameters p, double* residuals, double** jacobians) const override {
+    const SightingError e = sighting_error(edge_, pose_at(p[0]), Eigen::Map<const Eigen::Vector2d>(p[1]),
+                                           &line_, Eigen::Map<const Eigen::Vector2d>(p[2]));
+    Eigen::Map<Eigen::Vector2d>{residuals} = e.value;
+    if (jacobians && jacobians[0]) Eigen::Map<RowMajor23>{jacobians[0]} = e.by_pose;
+    if (jacobians && jacobians[1]) Eigen::Map<RowMajor2>{jacobians[1]} = e.by_landmark;
+    if (jacobians && jacobians[2]) Eigen::Map<RowMajor2>{jacobians[2]} = e.by_deviation;
+    return true;
+  }
+
+ private:
+  const SightingEdge& edge_;
+  const SlamLine& line_;
 };
 
 class PoseCost final : public ceres::SizedCostFunction<3, 3> {
@@ -66,9 +86,11 @@ class PoseCost final : public ceres::SizedCostFunction<3, 3> {
   const PosePrior& prior_;
 };
 
-class LandmarkCost final : public ceres::SizedCostFunction<2, 2> {
+/// Of a landmark or of the deviation of a piece.
+template <class Prior>
+class PairCost final : public ceres::SizedCostFunction<2, 2> {
  public:
-  explicit LandmarkCost(const LandmarkPrior& prior) : prior_(prior) {}
+  explicit PairCost(const Prior& prior) : prior_(prior) {}
   bool Evaluate(Parameters p, double* residuals, double** jacobians) const override {
     Eigen::Map<Eigen::Vector2d>{residuals} = prior_error(prior_, Eigen::Map<const Eigen::Vector2d>(p[0]));
     if (jacobians && jacobians[0]) Eigen::Map<RowMajor2>{jacobians[0]} = prior_.root;
@@ -76,7 +98,7 @@ class LandmarkCost final : public ceres::SizedCostFunction<2, 2> {
   }
 
  private:
-  const LandmarkPrior& prior_;
+  const Prior& prior_;
 };
 
 std::unique_ptr<ceres::LossFunction> loss_of(const GraphOptions& options) {
@@ -101,6 +123,7 @@ class IncrementalProblem {
         problem_(problem_options()),
         at_(graph.poses.size()),
         there_(graph.landmarks.size()),
+        deviations_(graph.deviations.size(), Eigen::Vector2d::Zero()),
         placed_(graph.poses.size(), false),
         known_(graph.landmarks.size(), false),
         steps_of_(graph.poses.size()),
@@ -114,7 +137,7 @@ class IncrementalProblem {
       sightings_of_[graph.sightings[i].pose].push_back(i);
     for (const LandmarkPrior& prior : graph.landmark_priors) {
       if (!known_[prior.landmark]) place(prior.landmark, prior.at);
-      problem_.AddResidualBlock(new LandmarkCost(prior), nullptr, there_[prior.landmark].data());
+      problem_.AddResidualBlock(new PairCost(prior), nullptr, there_[prior.landmark].data());
     }
   }
 
@@ -155,6 +178,7 @@ class IncrementalProblem {
     PoseGraph graph = graph_;
     for (std::size_t i = 0; i < at_.size(); ++i) graph.poses[i].at = pose_of(at_[i]);
     for (std::size_t i = 0; i < there_.size(); ++i) graph.landmarks[i].at = there_[i];
+    for (std::size_t i = 0; i < deviations_.size(); ++i) graph.deviations[i].at = deviations_[i];
     return graph;
   }
 
@@ -192,8 +216,16 @@ class IncrementalProblem {
 
   void tie(std::size_t s) {
     const SightingEdge& e = graph_.sightings[s];
-    problem_.AddResidualBlock(new SightingCost(e), loss_.get(), at_[e.pose].data(),
-                              there_[e.landmark].data());
+    const auto& line = graph_.landmarks[e.landmark].line;
+    double *const pose = at_[e.pose].data(), *const landmark = there_[e.landmark].data();
+    if (!e.deviation) {
+      problem_.AddResidualBlock(new SightingCost(e, line ? &*line : nullptr), loss_.get(), pose, landmark);
+      return;
+    }
+    double* const deviation = deviations_[*e.deviation].data();
+    if (!problem_.HasParameterBlock(deviation))
+      problem_.AddResidualBlock(new PairCost(graph_.deviations[*e.deviation]), nullptr, deviation);
+    problem_.AddResidualBlock(new PieceCost(e, *line), loss_.get(), pose, landmark, deviation);
   }
 
   void add_sighting(std::size_t s, bool from_guess) {
@@ -202,6 +234,8 @@ class IncrementalProblem {
     waiting_[e.landmark].push_back(s);
     if (from_guess && graph_.landmarks[e.landmark].given)
       place(e.landmark, graph_.landmarks[e.landmark].at);
+    else if (e.kind == SightingKind::line)
+      place(e.landmark, line_state(e, pose_of(at_[e.pose]), *graph_.landmarks[e.landmark].line));
     else if (const auto at = landmark_position(e, pose_of(at_[e.pose])))
       place(e.landmark, *at);
     else if (e.kind == SightingKind::bearing)
@@ -227,7 +261,7 @@ class IncrementalProblem {
   std::unique_ptr<ceres::LossFunction> loss_;
   ceres::Problem problem_;
   std::vector<Eigen::Vector3d> at_;
-  std::vector<Eigen::Vector2d> there_;
+  std::vector<Eigen::Vector2d> there_, deviations_;
   std::vector<bool> placed_, known_;
   std::vector<std::vector<std::size_t>> steps_of_, sightings_of_, waiting_;
 };

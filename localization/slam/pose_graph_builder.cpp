@@ -5,6 +5,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <limits>
+#include <span>
 
 #include "core/covariance.hpp"
 #include "localization/filters/measurement.hpp"
@@ -20,6 +21,31 @@ Eigen::Matrix3d root_of_covariance(const Eigen::Matrix3d& covariance) {
   constexpr double kMinVariance = 1e-10;  // 10 micrometres, 10 microradians
   return information_root(
       Eigen::Matrix3d((covariance + kMinVariance * Eigen::Matrix3d::Identity()).inverse().eval()));
+}
+
+// Finds the pieces of lines that sightings share, where the guess of poses and lines has them. `extents`: of
+// the sightings of lines.
+void add_deviations(PoseGraph& graph, std::span<const LineExtent> extents,
+                    const std::vector<std::size_t>& place) {
+  std::size_t next = 0;
+  for (SightingEdge& e : graph.sightings) {
+    if (e.kind != SightingKind::line) continue;
+    const LineExtent& extent = extents[next++];
+    if (e.landmark >= place.size() || place[e.landmark] == kNone || !has_deviations(extent)) continue;
+    GraphLandmark& landmark = graph.landmarks[place[e.landmark]];
+    std::vector<LinePiece>& pieces = landmark.line->pieces;
+    const Pose2 sensor = graph.poses[e.pose].at * e.robot_from_sensor;
+    const LinePiece now = sighted_piece(*landmark.line, landmark.at, extent, sensor.at());
+    auto piece = find_piece(pieces, now);
+    if (piece == pieces.end()) {
+      piece = pieces.insert(pieces.end(), now);
+      piece->slot = graph.deviations.size();
+      graph.deviations.push_back({.root = information_root(Eigen::Matrix2d(
+                                      piece_deviation(extent, now, now).covariance.inverse()))});
+    }
+    e.deviation = piece->slot;
+    e.by_deviation = piece_deviation(extent, *piece, now).by_deviation;
+  }
 }
 
 }  // namespace
@@ -56,16 +82,24 @@ std::vector<Match> PoseGraphBuilder::update(const SightingSet& seen) {
   }
   for (std::size_t k = 0; k < matches.size(); ++k) {
     const SeenLandmark& s = seen.sightings[k];
-    if (!slam_.last()[k] || s.extent) continue;  // landmarks of a graph are points
+    if (!slam_.last()[k]) continue;
     SightingEdge e;
     e.pose = pose;
     e.landmark = *slam_.last()[k];
+    e.robot_from_sensor = seen.robot_from_sensor;
+    if (const SlamLine* const line = s.extent ? slam_.line(e.landmark) : nullptr) {
+      e.kind = SightingKind::line;
+      e.value = line_measurement(s, *line);
+      e.root = information_root(Eigen::Matrix2d(line_noise(s, *line).inverse()));
+      extents_.push_back(*s.extent);
+      graph_.sightings.push_back(e);
+      continue;
+    }
     e.kind = s.has_position() ? SightingKind::range_bearing
              : s.range        ? SightingKind::range
                               : SightingKind::bearing;
     e.value << s.range.value_or(0), s.bearing.value_or(0);
     e.root = Eigen::Vector2d(1 / s.range_sd, 1 / s.bearing_sd).asDiagonal();
-    e.robot_from_sensor = seen.robot_from_sensor;
     graph_.sightings.push_back(e);
   }
   return matches;
@@ -73,7 +107,7 @@ std::vector<Match> PoseGraphBuilder::update(const SightingSet& seen) {
 
 PoseGraph PoseGraphBuilder::graph(std::vector<SlamLandmark>& landmarks) const {
   PoseGraph graph = graph_;
-  landmarks = slam_.landmarks();
+  landmarks = slam_.landmark_states();
   std::vector<std::size_t> place;
   std::vector<std::size_t> ranges;
   for (const SightingEdge& e : graph_.sightings) {
@@ -86,13 +120,17 @@ PoseGraph PoseGraphBuilder::graph(std::vector<SlamLandmark>& landmarks) const {
   for (const SlamLandmark& l : landmarks) {
     place.resize(std::max(place.size(), l.index + 1), kNone);
     place[l.index] = graph.landmarks.size();
-    if (const auto known = slam_.prior(l.index))
-      graph.landmark_priors.push_back(
-          {.landmark = graph.landmarks.size(),
-           .at = known->at,
-           .root = information_root(Eigen::Matrix2d(known->covariance.inverse()))});
-    graph.landmarks.push_back({.id = static_cast<std::int64_t>(l.index), .at = l.at, .given = true});
+    if (const auto known = slam_.prior(l.index)) {
+      const Eigen::Matrix2d covariance = l.line ? line_covariance(*known) : known->covariance;
+      graph.landmark_priors.push_back({.landmark = graph.landmarks.size(),
+                                       .at = l.line ? Eigen::Vector2d(Eigen::Vector2d::Zero()) : known->at,
+                                       .root = information_root(Eigen::Matrix2d(covariance.inverse()))});
+    }
+    graph.landmarks.push_back(
+        {.id = static_cast<std::int64_t>(l.index), .at = l.at, .given = true, .line = l.line});
+    if (l.line) graph.landmarks.back().line->pieces.clear();
   }
+  add_deviations(graph, extents_, place);
   std::erase_if(graph.sightings, [&](const SightingEdge& e) {
     return e.landmark >= place.size() || place[e.landmark] == kNone;
   });

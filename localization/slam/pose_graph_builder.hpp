@@ -15,14 +15,16 @@ class PoseGraphBuilder final : public Localizer {
   LocalizationStatus status() const override { return slam_.status(); }
 
   /// Returns the graph, with the map's landmarks and the start as priors and SLAM's result as initial
-  /// guess. Omits landmarks with log odds below 0. `landmarks`: those of SLAM, in the order of the graph.
+  /// guess. Omits landmarks with log odds below 0. `landmarks`: those of SLAM, in the order of the graph,
+  /// lines with their two numbers (state_as_position()).
   PoseGraph graph(std::vector<SlamLandmark>& landmarks) const;
 
  private:
   EkfSlam& slam_;
   PoseEstimate start_;
   BodyMotion pending_;
-  PoseGraph graph_;  ///< landmarks by the indices of SLAM
+  PoseGraph graph_;                  ///< landmarks by the indices of SLAM
+  std::vector<LineExtent> extents_;  ///< of the sightings of lines, in their order
 };
 
 }  // namespace waymark::localization

@@ -33,6 +33,12 @@ SlamLine slam_line(const MapLandmark& landmark, const LineFeatures& features) {
           .length = features.length};
 }
 
+Eigen::Matrix2d line_covariance(const MapLandmark& landmark) {
+  return Eigen::Vector2d(landmark.normal.dot(landmark.covariance * landmark.normal),
+                         std::max(landmark.normal_variance, kMinTurnVariance))
+      .asDiagonal();
+}
+
 SlamLine slam_line(const SeenLandmark& seen, const Pose2& sensor, const LineFeatures& features) {
   const double angle = sensor.yaw + seen.features.value[features.direction];
   SlamLine line{.direction = features.direction, .length = features.length};
@@ -57,7 +63,12 @@ ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, cons
 
 Eigen::Vector2d line_innovation(const SeenLandmark& seen, const SlamLine& line,
                                 const Eigen::Vector2d& expected) {
-  return {*seen.range - expected[0], wrap_angle(seen.features.value[line.direction] - expected[1])};
+  const Eigen::Vector2d off = line_measurement(seen, line) - expected;
+  return {off[0], wrap_angle(off[1])};
+}
+
+Eigen::Vector2d line_measurement(const SeenLandmark& seen, const SlamLine& line) {
+  return {*seen.range, seen.features.value[line.direction]};
 }
 
 Eigen::Matrix2d line_noise(const SeenLandmark& seen, const SlamLine& line) {
@@ -74,6 +85,16 @@ LinePiece sighted_piece(const SlamLine& line, const Eigen::Vector2d& state, cons
                         const Eigen::Vector2d& sensor) {
   const double foot = left_of_normal(normal_at_turn(line, state[1])).dot(sensor - line.anchor);
   return {foot + seen.from, foot + seen.to};
+}
+
+bool has_deviations(const LineExtent& seen) {
+  return seen.deviation_sd > 0 && seen.deviation_turn_sd > 0;
+}
+
+std::vector<LinePiece>::iterator find_piece(std::vector<LinePiece>& pieces, const LinePiece& now) {
+  const auto best =
+      std::ranges::max_element(pieces, {}, [&](const LinePiece& p) { return deviation_correlation(p, now); });
+  return best != pieces.end() && deviation_correlation(*best, now) > 0.5 ? best : pieces.end();
 }
 
 PieceDeviation piece_deviation(const LineExtent& seen, const LinePiece& piece, const LinePiece& now) {

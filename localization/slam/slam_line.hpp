@@ -12,7 +12,7 @@ namespace waymark::localization {
 /// unknowns, m at its middle and rad, as a sighting measures them.
 struct LinePiece {
   double from = 0, to = 0;  ///< m from the anchor, to the left of the normal
-  std::size_t slot = 0;     ///< of the deviation, in SlamState
+  std::size_t slot = 0;     ///< of the deviation, in SlamState or PoseGraph
 
   double middle() const { return (from + to) / 2; }
   double length() const { return to - from; }
@@ -37,6 +37,9 @@ struct SlamLine {
 /// Returns the frame of a line of the map, with its middle as the anchor.
 SlamLine slam_line(const MapLandmark& landmark, const LineFeatures& features);
 
+/// Returns the covariance of the two numbers of a line of the map.
+Eigen::Matrix2d line_covariance(const MapLandmark& landmark);
+
 /// Returns the frame of a sighted line, with the centre of its piece as the anchor: there the errors of
 /// distance and direction are independent. `sensor`: in the map.
 SlamLine slam_line(const SeenLandmark& seen, const Pose2& sensor, const LineFeatures& features);
@@ -50,6 +53,9 @@ ExpectedSighting expect(const Pose2& robot, const Pose2& robot_from_sensor, cons
 Eigen::Vector2d line_innovation(const SeenLandmark& seen, const SlamLine& line,
                                 const Eigen::Vector2d& expected);
 
+/// Returns the measured distance, m, and direction of the normal, rad, of a sighted line.
+Eigen::Vector2d line_measurement(const SeenLandmark& seen, const SlamLine& line);
+
 /// Returns the noise of distance and direction, which are correlated: the distance is that of the foot of the
 /// sensor, and a turn of the line about the centre of the piece moves the foot.
 Eigen::Matrix2d line_noise(const SeenLandmark& seen, const SlamLine& line);
@@ -57,6 +63,13 @@ Eigen::Matrix2d line_noise(const SeenLandmark& seen, const SlamLine& line);
 /// Returns the piece of a line that is sighted from `sensor`.
 LinePiece sighted_piece(const SlamLine& line, const Eigen::Vector2d& state, const LineExtent& seen,
                         const Eigen::Vector2d& sensor);
+
+/// Returns whether pieces of a sighted line may deviate from it.
+bool has_deviations(const LineExtent& seen);
+
+/// Returns the piece that deviates like another one; end() if none shares more than half with it: the others
+/// say nothing about its deviation.
+std::vector<LinePiece>::iterator find_piece(std::vector<LinePiece>& pieces, const LinePiece& now);
 
 /// What the deviation of a piece adds to a sighting.
 struct PieceDeviation {

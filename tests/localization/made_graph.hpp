@@ -14,6 +14,45 @@ struct MadeGraph {
   std::vector<Eigen::Vector2d> landmarks;
 };
 
+/// Adds walls about the drive, seen from every second pose in two pieces that deviate: directions and
+/// distances of correlated noise.
+inline void add_walls(MadeGraph& made, std::uint64_t seed) {
+  Random random(seed, "walls");
+  const auto draw = [&](const Eigen::Matrix2d& root) {
+    return Eigen::Vector2d(root.inverse() * Eigen::Vector2d(random.normal(), random.normal()));
+  };
+  Eigen::Matrix2d noise_root, deviation_root = Eigen::Vector2d(50, 100).asDiagonal();
+  noise_root << 40, 12, 0, 80;
+  for (int wall = 0; wall < 3; ++wall) {
+    const double angle = 2.1 * wall + 0.3;
+    SlamLine line{.normal = {std::cos(angle), std::sin(angle)}};
+    line.anchor =
+        Eigen::Vector2d(0, -10) - 17 * line.normal + 3 * Eigen::Vector2d(random.normal(), random.normal());
+    const Eigen::Vector2d state(0.2 * random.normal(), 0.05 * random.normal());
+    const std::size_t first = made.graph.deviations.size();
+    std::vector<Eigen::Vector2d> deviations;
+    for (int piece = 0; piece < 2; ++piece) {
+      made.graph.deviations.push_back({.root = deviation_root});
+      deviations.push_back(draw(deviation_root));
+    }
+    for (std::size_t i = 0; i < made.truth.size(); i += 2) {
+      SightingEdge e;
+      e.pose = i, e.landmark = made.landmarks.size();
+      e.kind = SightingKind::line;
+      e.root = noise_root;
+      e.robot_from_sensor = {0.3, 0.1, 0.2};
+      const ExpectedSighting seen = expect(made.truth[i], e.robot_from_sensor, line, state);
+      const std::size_t piece = i % 4 / 2;
+      e.deviation = first + piece;
+      e.by_deviation << 1, random.uniform(-2, 2), 0, 1;
+      e.value = seen.value + e.by_deviation * deviations[piece] + draw(noise_root);
+      made.graph.sightings.push_back(e);
+    }
+    made.landmarks.push_back(state);
+    made.graph.landmarks.push_back({.id = 2000 + wall, .line = line});
+  }
+}
+
 inline MadeGraph made_graph(std::uint64_t seed, int poses, SightingKind kind = SightingKind::position,
                             double noise = 1) {
   Random random(seed, "graph");

@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Geometry>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -25,16 +26,20 @@ using ::testing::HasSubstr;
 /// The slow twin: numeric derivatives, one dense matrix, Gauss-Newton with Levenberg's damping.
 struct Dense {
   static Eigen::VectorXd unknowns(const PoseGraph& g) {
-    Eigen::VectorXd x(3 * g.poses.size() + 2 * g.landmarks.size());
+    Eigen::VectorXd x(3 * g.poses.size() + 2 * (g.landmarks.size() + g.deviations.size()));
     for (std::size_t i = 0; i < g.poses.size(); ++i) x.segment<3>(3 * i) = g.poses[i].at.vector();
     for (std::size_t i = 0; i < g.landmarks.size(); ++i)
       x.segment<2>(3 * g.poses.size() + 2 * i) = g.landmarks[i].at;
+    for (std::size_t i = 0; i < g.deviations.size(); ++i)
+      x.segment<2>(3 * g.poses.size() + 2 * (g.landmarks.size() + i)) = g.deviations[i].at;
     return x;
   }
   static PoseGraph with(PoseGraph g, const Eigen::VectorXd& x) {
     for (std::size_t i = 0; i < g.poses.size(); ++i) g.poses[i].at = pose_of(x.segment<3>(3 * i));
     for (std::size_t i = 0; i < g.landmarks.size(); ++i)
       g.landmarks[i].at = x.segment<2>(3 * g.poses.size() + 2 * i);
+    for (std::size_t i = 0; i < g.deviations.size(); ++i)
+      g.deviations[i].at = x.segment<2>(3 * g.poses.size() + 2 * (g.landmarks.size() + i));
     return g;
   }
   static Eigen::VectorXd errors(const PoseGraph& g) {
@@ -47,6 +52,19 @@ struct Dense {
     }
     for (const SightingEdge& e : g.sightings) {
       const Eigen::Vector2d l = g.landmarks[e.landmark].at;
+      if (e.kind == SightingKind::line) {
+        // Distance and direction by two points of the line.
+        const SlamLine& line = *g.landmarks[e.landmark].line;
+        const Eigen::Rotation2Dd turn(l[1]);
+        const Eigen::Vector2d n = turn * line.normal, on = line.anchor + l[0] * n;
+        const Pose2 sensor = g.poses[e.pose].at * e.robot_from_sensor;
+        Eigen::Vector2d off((sensor.at() - on).dot(n), std::atan2(n.y(), n.x()) - sensor.yaw);
+        if (e.deviation) off += e.by_deviation * g.deviations[*e.deviation].at;
+        off -= e.value;
+        off[1] = wrap_angle(off[1]);
+        add(Eigen::Vector2d(e.root * off));
+        continue;
+      }
       const Eigen::Vector2d there =
           (inverse(g.poses[e.pose].at * e.robot_from_sensor) * Pose2{l.x(), l.y(), 0}).at();
       if (e.kind == SightingKind::position) {
@@ -68,6 +86,7 @@ struct Dense {
     }
     for (const LandmarkPrior& p : g.landmark_priors)
       add(Eigen::Vector2d(p.root * (g.landmarks[p.landmark].at - p.at)));
+    for (const GraphDeviation& d : g.deviations) add(Eigen::Vector2d(d.root * d.at));
     return Eigen::Map<Eigen::VectorXd>(all.data(), Eigen::Index(all.size()));
   }
   static Eigen::MatrixXd jacobian(const PoseGraph& g) {
@@ -157,6 +176,65 @@ TEST(Graph, SolutionIsThatOfTheDenseTwin) {
             fast.landmark_covariances[l].isApprox(all.block<2, 2>(first + 2 * l, first + 2 * l), 1e-4));
       EXPECT_EQ(fast.pose_covariances[0], Eigen::Matrix3d::Zero().eval()) << "the first pose is held";
     }
+}
+
+TEST(Graph, LinesWithPiecesAreThoseOfTheDenseTwin) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    MadeGraph made = made_graph(seed, 24);
+    if (seed % 2 == 0)  // lines alone, besides the steps
+      made.graph.landmarks.clear(), made.graph.sightings.clear(), made.landmarks.clear();
+    add_walls(made, seed);
+    if (seed > 2) {
+      made.graph.landmark_priors.push_back({.landmark = made.graph.landmarks.size() - 1,
+                                            .at = {0.1, 0.02},
+                                            .root = Eigen::Vector2d(30, 60).asDiagonal()});
+      made.graph.pose_priors.push_back({.pose = 0, .at = {}, .root = Eigen::Matrix3d::Identity() * 50});
+    }
+    const Eigen::Index held = seed > 2 ? 0 : 3;
+    const GraphSolution fast = optimise(made.graph, {.block = 8});
+    PoseGraph start = made.graph;
+    for (std::size_t i = 0; i < start.poses.size(); ++i) start.poses[i].at = made.truth[i];
+    for (std::size_t i = 0; i < start.landmarks.size(); ++i) start.landmarks[i].at = made.landmarks[i];
+    const PoseGraph slow = Dense::solved(start, held);
+    EXPECT_LT(distance(fast.graph, slow), 1e-4) << "seed " << seed;
+    for (std::size_t i = 0; i < slow.deviations.size(); ++i)
+      EXPECT_LT((fast.graph.deviations[i].at - slow.deviations[i].at).norm(), 1e-4) << i;
+    EXPECT_NEAR(fast.chi2, Dense::errors(slow).squaredNorm(), 1e-6 * (1 + fast.chi2)) << "seed " << seed;
+    EXPECT_EQ(fast.residuals, std::size_t(Dense::errors(slow).size()));
+    const Eigen::MatrixXd all = Dense::covariance(fast.graph, held);
+    for (std::size_t i = 1; i < made.truth.size(); ++i) {
+      const Eigen::Index at = 3 * Eigen::Index(i) - held;
+      EXPECT_TRUE(fast.pose_covariances[i].isApprox(all.block<3, 3>(at, at), 1e-4)) << i;
+    }
+    for (std::size_t l = 0; l < made.landmarks.size(); ++l) {
+      const Eigen::Index at = 3 * Eigen::Index(made.truth.size()) - held + 2 * Eigen::Index(l);
+      EXPECT_TRUE(fast.landmark_covariances[l].isApprox(all.block<2, 2>(at, at), 1e-4)) << l;
+    }
+  }
+}
+
+TEST(Graph, ErrorsAreAsLargeAsTheCovariancesSayWithLines) {
+  double sum = 0;
+  constexpr int kRuns = 60;
+  for (int seed = 1; seed <= kRuns; ++seed) {
+    MadeGraph made = made_graph(std::uint64_t(seed), 40);
+    made.graph.landmarks.clear(), made.graph.sightings.clear(), made.landmarks.clear();
+    add_walls(made, std::uint64_t(seed));
+    const GraphSolution s = optimise(made.graph);
+    const Pose2 off = s.graph.poses.back().at;
+    const Eigen::Vector3d e(off.x - made.truth.back().x, off.y - made.truth.back().y,
+                            wrap_angle(off.yaw - made.truth.back().yaw));
+    sum += e.dot(s.pose_covariances.back().ldlt().solve(e));
+  }
+  EXPECT_GT(sum / (3 * kRuns), 0.8);
+  EXPECT_LT(sum / (3 * kRuns), 1.22);
+}
+
+TEST(Graph, ASightingOfALineNeedsALine) {
+  MadeGraph made = made_graph(1, 24);
+  add_walls(made, 1);
+  made.graph.landmarks.back().line.reset();
+  EXPECT_THROW(optimise(made.graph), std::out_of_range);
 }
 
 TEST(Graph, ErrorsAreAsLargeAsTheCovariancesSay) {

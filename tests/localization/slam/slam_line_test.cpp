@@ -6,6 +6,8 @@
 #include <numbers>
 
 #include "localization/slam/ekf_slam.hpp"
+#include "localization/slam/graph_solver.hpp"
+#include "localization/slam/pose_graph_builder.hpp"
 #include "tests/localization/made_types.hpp"
 #include "tests/localization/made_world.hpp"
 
@@ -213,6 +215,46 @@ TEST(SlamLine, ItsCovarianceIsThatOfItsErrorsWhereWallsAreNotStraight) {
                                [](const Pose2& start) { return line_slam(start); });
   EXPECT_GT(sum, 0.6);
   EXPECT_LT(sum, 1.9);
+}
+
+// Walls alone tie the graph of a drive. Each pose uses later looks as well, so that the middle of the drive
+// is known better than SLAM knew it.
+TEST(SlamLine, TheGraphOfADriveHasItsWalls) {
+  const LookNoise wavy{.deviation_sd = 0.03, .deviation_turn_sd = 0.015};
+  constexpr int kRuns = 40, kSteps = 160;
+  double nees = 0, of_graph = 0, of_slam = 0;
+  for (std::uint64_t seed = 1; seed <= kRuns; ++seed) {
+    RoomDrive room(seed, wavy);
+    EkfSlam slam = line_slam(room.truth());
+    PoseGraphBuilder drive({room.truth(), Eigen::Matrix3d::Identity() * 1e-9}, slam);
+    Pose2 truth, online;
+    for (int i = 0; i < kSteps; ++i) {
+      drive.predict(room.drive());
+      drive.update(room.look());
+      if (i == kSteps / 2) truth = room.truth(), online = drive.estimate().pose;
+    }
+    std::vector<SlamLandmark> landmarks;
+    const GraphSolution all = optimise(drive.graph(landmarks));
+    ASSERT_GE(landmarks.size(), 4U);
+    EXPECT_GE(all.graph.deviations.size(), 12U);
+    const std::size_t middle = kSteps / 2 + 1;  // the start is the first pose
+    const auto error_of = [&](const Pose2& at) {
+      return Eigen::Vector3d(at.x - truth.x, at.y - truth.y, wrap_angle(at.yaw - truth.yaw));
+    };
+    const Eigen::Vector3d error = error_of(all.graph.poses[middle].at);
+    nees += error.dot(all.pose_covariances[middle].ldlt().solve(error)) / (3 * kRuns);
+    of_graph += error.head<2>().squaredNorm();
+    of_slam += error_of(online).head<2>().squaredNorm();
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      landmarks[i].at = all.graph.landmarks[i].at, landmarks[i].covariance = all.landmark_covariances[i];
+      state_as_position(landmarks[i]);
+      const Eigen::Vector2d at = landmarks[i].at.cwiseAbs();
+      EXPECT_NEAR(std::max(at.x() / 15, at.y() / 12), 1, 0.05) << "on a wall of the room";
+    }
+  }
+  EXPECT_GT(nees, 0.7);
+  EXPECT_LT(nees, 1.4);
+  EXPECT_LT(of_graph, 0.95 * of_slam);
 }
 
 // However often one piece is seen, its wall is not known better than the piece deviates.

@@ -105,7 +105,10 @@ class Graph final : public LocalizeMethod {
     localization::GraphOptions options = options_;
     if (options.kernel == "auto") options.kernel = "huber";
     const localization::GraphSolution solution = solve(std::move(graph), options, task.callbacks);
-    for (std::size_t i = 0; i < landmarks.size(); ++i) copy_estimate(solution, i, landmarks[i]);
+    for (std::size_t i = 0; i < landmarks.size(); ++i) {
+      copy_estimate(solution, i, landmarks[i]);
+      if (landmarks[i].line) state_as_position(landmarks[i]);
+    }
     write_updated_map(task, landmarks, setup.options.confirmed, name());
     // Rows between two poses of the graph keep their position relative to the previous pose.
     std::size_t pose = 0;
