@@ -106,10 +106,10 @@ std::vector<const DetectorSpec*> named_detectors(std::string_view list) {
 
 void ScanDetectionOptions::describe(OptionVisitor& option) {
   option("scans", find,
-         {.help =
-              fmt::format("Detectors of landmarks in laser scans, separated by commas: {}; auto: those whose "
-                          "types have landmarks in the map",
-                          fmt::join(laser_detectors().names(), ", "))});
+         {.help = fmt::format(
+              "Detectors of landmarks in laser scans, separated by commas: {}; auto: those whose "
+              "types have landmarks in the map; without a map walls if they fill the scans, else rocks",
+              fmt::join(laser_detectors().names(), ", "))});
   option("scan_features", features, {.help = "Use the diameters, radii and angles measured in scans"});
 }
 

@@ -94,7 +94,7 @@ class EkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -171,7 +171,7 @@ class GlobalSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -230,7 +230,7 @@ class GraphSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -350,7 +350,7 @@ class PfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -411,7 +411,7 @@ class SlamSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres
@@ -495,7 +495,7 @@ class UkfSettings(TypedDict, total=False):
     track_width: float  # Metres between left and right wheels on the DEM
     sensor_noise: float  # Factor on the standard deviations of ranges and bearings in the log
     error_memory: float  # Factor on the correlation times of sensor errors in the log; 0: independent errors
-    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map
+    scans: str  # Detectors of landmarks in laser scans, separated by commas: doors, pillars, poles, reflectors, rocks, stems, wall_lines, walls; auto: those whose types have landmarks in the map; without a map walls if they fill the scans, else rocks
     scan_features: bool  # Use the diameters, radii and angles measured in scans
     sensor_height: float  # With --dem: height of the sensor above the ground, metres, for occlusion
     landmark_height: float  # With --dem: height of a landmark that must be visible, metres

@@ -35,7 +35,12 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
 
 inline constexpr double kSlamRadius = 5000;  ///< m around the start, in a map too large to be read at once
 
-/// Plays the task's log to a SLAM localizer, with stems found in its scans.
+/// Returns the detectors for the laser scans of a log where the map has no landmarks that decide: those of
+/// walls if straight walls return enough of the beams, else that of rocks. `std::nullopt`: those of the map.
+std::optional<localization::ScanDetectionOptions> scans_of_log(const localization::RobotLog& log,
+                                                               const RobotMap& map);
+
+/// Plays the task's log to a SLAM localizer, with the landmarks found in its scans.
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,
                              localization::Localizer& localizer);
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/locked_folder.hpp"
+#include "core/random.hpp"
 #include "geodb/write_map.hpp"
 #include "localization/slam/existence_log_odds.hpp"
 #include "workflows/registries.hpp"
@@ -86,6 +87,38 @@ TEST_F(SlamUpdateOfARock, ErrorsCommonToAllImagesAreKept) {
   EXPECT_NEAR(both.quality.feature_confidences[radius_].value(),
               plain.quality.feature_confidences[radius_].value(), 1e-9);
   EXPECT_NEAR(both.features[radius_].variance, plain.features[radius_].variance / 3 + common, 1e-9);
+}
+
+// A log of a room of 8 x 6 m, whose walls are 1 m nearer from beam to beam where `roughness` is 1.
+localization::RobotLog log_of_room(double roughness) {
+  localization::RobotLog log;
+  for (int scan = 0; scan < 100; ++scan) {
+    localization::LaserScan made;
+    made.first_angle = -std::numbers::pi / 2, made.angle_step = std::numbers::pi / 180;
+    made.max_range = 20;
+    Random random(std::uint64_t(scan), "room");
+    for (int i = 0; i <= 180; ++i) {
+      const double angle = made.first_angle + i * made.angle_step + 0.01 * scan;
+      const double wall = std::min(4 / std::abs(std::cos(angle)), 3 / std::abs(std::sin(angle)));
+      made.ranges.push_back(static_cast<float>(wall - roughness * random.uniform(0, 1)));
+    }
+    log.events.push_back({.t = double(scan), .what = made});
+  }
+  return log;
+}
+
+TEST(ScansOfALog, WithoutAMapWallsAreFoundWhereTheyFillTheScans) {
+  const OpenedMap none = make_empty_robot_map();
+  EXPECT_EQ(scans_of_log(log_of_room(0), none.map)->find, "walls,wall_lines");
+  EXPECT_EQ(scans_of_log(log_of_room(1), none.map)->find, "rocks");
+  EXPECT_EQ(scans_of_log({}, none.map)->find, "rocks");
+  localization::RobotLog park = log_of_room(0);
+  park.shows_stems = true;
+  EXPECT_EQ(scans_of_log(park, none.map)->find, "stems");
+}
+
+TEST_F(SlamUpdateOfARock, ScansAreOfWhatAMapHolds) {
+  EXPECT_FALSE(scans_of_log(log_of_room(0), make_map().map));
 }
 
 /// South polar stereographic, at 90 degrees east: x grows to the north, y to the west.
