@@ -45,8 +45,10 @@ std::string clock_time(double seconds) {
   return fmt::format("{}:{:02}:{:02}", whole / 3600, whole / 60 % 60, whole % 60);
 }
 
+/// Returns "0.31", "3.1", "3100" or "2300000 units/s".
 std::string speed(const pipeline::Progress& progress) {
-  return fmt::format("{:.3g} units/s", progress.rate);
+  return progress.rate < 100 ? fmt::format("{:.2g} units/s", progress.rate)
+                             : fmt::format("{:.0f} units/s", progress.rate);
 }
 
 std::size_t terminal_width() {
@@ -55,17 +57,22 @@ std::size_t terminal_width() {
   return known ? size.ws_col : 80;
 }
 
-/// "join_mountain_tops     [#######.......]  50 %  3.1 units/s  0:04 left", redrawn in place.
+/// "join_mountain_tops     [#######.......]  50 %  3.1 units/s  0:04 left", redrawn in place. The bar takes
+/// the columns that the text leaves.
 void draw_bar(const pipeline::Progress& progress) {
-  constexpr std::size_t kBar = 24;
+  constexpr std::size_t kMinBar = 8, kMaxBar = 24;
   const double part = fraction(progress);
-  const auto full = static_cast<std::size_t>(part * kBar);
-  std::string line = fmt::format("{:<22} [{}{}] {:3.0f} %", progress.stage, std::string(full, '#'),
-                                 std::string(kBar - full, '.'), std::floor(100 * part));
-  if (progress.rate > 0 && progress.total > 1) line += "  " + speed(progress);
-  if (!finished(progress)) line += "  " + clock_time(seconds_left(progress)) + " left";
-  line.resize(std::min(line.size(), terminal_width() - 1));
-  fmt::print(stderr, "\r{}\x1b[K{}", line, finished(progress) ? "\n" : "");
+  std::string text = fmt::format(" {:3.0f} %", std::floor(100 * part));
+  if (progress.rate > 0 && progress.total > 1) text += "  " + speed(progress);
+  if (!finished(progress)) text += "  " + clock_time(seconds_left(progress)) + " left";
+  std::string line = fmt::format("{:<22} ", progress.stage);
+  const std::size_t width = terminal_width() - 1;  // a full line would wrap
+  const std::size_t taken = line.size() + text.size() + 2;
+  const std::size_t bar = std::clamp(width - std::min(width, taken), kMinBar, kMaxBar);
+  const auto full = static_cast<std::size_t>(part * static_cast<double>(bar));
+  line += "[" + std::string(full, '#') + std::string(bar - full, '.') + "]" + text;
+  line.resize(std::min(line.size(), width));
+  draw_progress("\r" + line + "\x1b[K", finished(progress));
 }
 
 /// GDAL's "0...10...20...30...40...50...60...70...80...90...100 - done.", a line per stage.
@@ -75,15 +82,16 @@ class Dots {
     if (progress.stage != stage_) {
       stage_ = progress.stage;
       drawn_ = -1;
-      fmt::print(stderr, "{}: ", stage_);
+      end_progress();
+      draw_progress(stage_ + ": ", false);
     }
     const int reached = static_cast<int>(std::floor(fraction(progress) * kSteps));
+    std::string text;
     while (drawn_ < reached) {
       ++drawn_;
-      drawn_ % 4 == 0 ? fmt::print(stderr, "{}", drawn_ / 4 * 10) : fmt::print(stderr, ".");
+      text += drawn_ % 4 == 0 ? std::to_string(drawn_ / 4 * 10) : ".";
     }
-    if (finished(progress)) fmt::print(stderr, " - done.\n");
-    std::fflush(stderr);
+    draw_progress(finished(progress) ? text + " - done." : text, finished(progress));
   }
 
  private:
@@ -151,6 +159,7 @@ void write_message(const workflows::Message& message, bool only_json) {
       return;
     case workflows::MessageKind::result:
       if (only_json) return log_summary(message.text);
+      end_progress();
       std::cout << message.text;
   }
 }

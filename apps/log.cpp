@@ -4,6 +4,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 
@@ -13,6 +14,8 @@ namespace waymark::apps {
 namespace {
 
 constexpr std::size_t kMaxMessage = 4000;  // bytes: about a screen
+
+std::atomic<bool> has_open_line = false;
 
 spdlog::logger& log() {
   static const auto logger = [] {
@@ -40,18 +43,33 @@ bool quiet_log() {
   return log().level() > spdlog::level::warn;
 }
 
+void draw_progress(std::string_view text, bool ends) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  if (ends) std::fputc('\n', stderr);
+  std::fflush(stderr);
+  has_open_line = !ends;
+}
+
+void end_progress() {
+  if (has_open_line.exchange(false)) std::fputc('\n', stderr);
+}
+
 void log_error(std::string_view text) {
+  end_progress();
   log().error(printable(text, kMaxMessage));
 }
 void log_warning(std::string_view text) {
+  if (!quiet_log()) end_progress();
   log().warn(printable(text, kMaxMessage));
 }
 void log_detail(std::string_view text) {
+  if (log().should_log(spdlog::level::debug)) end_progress();
   log().debug(printable(text));
 }
 
 void log_summary(std::string_view text) {
   if (quiet_log()) return;
+  end_progress();
   const std::string safe = printable(text);
   std::fwrite(safe.data(), 1, safe.size(), stderr);
 }

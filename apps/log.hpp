@@ -10,6 +10,11 @@ void set_log_level(LogLevel level);
 /// Returns true under LogLevel::errors, which suppresses summaries as well.
 bool quiet_log();
 
+/// Draws a part of a line of progress, which stays open until `ends`. Messages begin on a line of their own.
+void draw_progress(std::string_view text, bool ends);
+/// Ends a line of progress that is open.
+void end_progress();
+
 void log_error(std::string_view text);
 void log_warning(std::string_view text);
 void log_detail(std::string_view text);

@@ -70,6 +70,7 @@ int run_program(const std::vector<std::string>& words) {
 int guarded(const std::vector<std::string>& words) {
   try {
     const int code = run_program(words);
+    end_progress();
     if (!std::cout.flush())
       throw Error(ErrorCode::output, "cannot write to standard output", "", "is the disk full?");
     return code;

@@ -44,6 +44,8 @@ class MapDrive final : public Command {
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
                  .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "points"})
                  .or_else("recognised by the files"),
+             Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
+                      "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
              Argument{"--topic", "NAME", &request_.log_format.topics,
                       "Read this topic of a bag that has several of its type; may be repeated"}
                  .or_else("that with the most messages"),

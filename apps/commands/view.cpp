@@ -51,9 +51,11 @@ class View final : public Command {
                  .or_else("24000"),
              Argument{"--title", "TEXT", &request_.title, "Title of the page"}.or_else("the file's name"),
              Argument{"--log-format", "FORMAT", &request_.log_format.format, "Format of the log"}
-                 .one_of({"waymark", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam", "g2o",
-                          "toro", "points"})
+                 .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap", "isam",
+                          "g2o", "toro", "points"})
                  .or_else("recognised by the files"),
+             Argument{"--columns", "TARGET=EXPRESSION,...", &request_.log_format.columns,
+                      "What the columns of a CSV log are, e.g. t=stamp/1000,v=speed,omega=rad(rate)"},
              Argument{"--robot", "K", &request_.log_format.robot, "Number of the robot in an MRCLAM dataset"},
              format_option(&format_)},
         .examples = {{"waymark view mars.gpkg -o mars.html", "A landing with its images on the terrain"},

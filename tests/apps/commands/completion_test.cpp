@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <sstream>
@@ -63,12 +64,37 @@ TEST(Completion, IsSoundZsh) {
   EXPECT_EQ(bash("$WAYMARK completion zsh | zsh -n").err, "");
 }
 
+TEST(Completion, ZshCompletesWhatIsTyped) {
+  if (bash("command -v zsh").code != 0) GTEST_SKIP() << "zsh is not installed";
+  const TempFolder folder;
+  write_text(folder / "my dem.tif", "");
+  write_text(folder / "_waymark", waymark({"completion", "zsh"}).out);
+  const auto completed = [&](const std::string& typed) {
+    const Outcome said =
+        bash(fmt::format("cd '{}' && timeout 60 /usr/bin/python3 '{}/tests/apps/zsh_line.py' '{}'",
+                         folder.path().string(), WAYMARK_SOURCE_DIR, typed));
+    EXPECT_EQ(said.code, 0) << said.err;
+    return said.out;
+  };
+  EXPECT_EQ(completed("waymark pea"), "waymark peaks ");
+  EXPECT_EQ(completed("waymark --threads 2 ex"), "waymark --threads 2 export ");
+  EXPECT_EQ(completed("waymark peaks --nod"), "waymark peaks --nodata ");
+  EXPECT_EQ(completed("waymark peaks --nodata f"), "waymark peaks --nodata fill ");
+  EXPECT_EQ(completed("waymark peaks my"), "waymark peaks my\\ dem.tif ");
+  EXPECT_EQ(completed("waymark query m.gpkg --type mount"), "waymark query m.gpkg --type mountain_top ");
+}
+
 TEST(Completion, IsSoundFish) {
   const std::string script = waymark({"completion", "fish"}).out;
-  EXPECT_THAT(script, testing::HasSubstr("-n '__fish_seen_subcommand_from peaks' -l nodata"));
+  EXPECT_THAT(script, testing::HasSubstr("-n '__waymark_command_is peaks' -l nodata"));
   if (bash("command -v fish").code != 0) GTEST_SKIP() << "fish is not installed";
-  const Outcome offers = bash("fish -c '$WAYMARK completion fish | source; complete -C \"waymark pea\"'");
-  EXPECT_THAT(offers.out, testing::StartsWith("peaks\t"));
+  const auto offered_by_fish = [](const std::string& typed) {
+    return bash("fish -c '$WAYMARK completion fish | source; complete -C \"" + typed + "\"'").out;
+  };
+  EXPECT_THAT(offered_by_fish("waymark pea"), testing::StartsWith("peaks\t"));
+  EXPECT_THAT(offered_by_fish("waymark --threads 2 ex"), testing::StartsWith("export\t"));
+  EXPECT_THAT(offered_by_fish("waymark --threads 2 peaks --nodata f"), testing::StartsWith("fill\t"));
+  EXPECT_EQ(offered_by_fish("waymark query export --nodat"), "");  // a map of that name is no command
 }
 
 TEST(ManPage, HasEveryCommandAndGroffIsContent) {

@@ -91,6 +91,24 @@ TEST_F(CsvLog, ATableGivesTheTrackOfItsRecords) {
   EXPECT_NEAR(last.at("yaw"), last_row().at("yaw"), 1e-5);
 }
 
+// The hint of a log that is not understood names --columns: each command that reads the log has it.
+TEST_F(CsvLog, IsReadByMapAndViewToo) {
+  std::string csv = "stamp,speed,rate,angle,distance,east,north,heading\n";
+  for (int i = 0; i < 200; ++i)
+    csv += fmt::format("{0},1000,0,,,{1},0,0\n{0},,,{2},{3},,,\n", 100 * i, 0.1 * i,
+                       std::atan2(5, 30 - 0.1 * i), std::hypot(5, 30 - 0.1 * i));
+  write_text(folder_ / "drive.csv", csv);
+  const std::string columns =
+      "t=stamp/1000,v=speed/1000,omega=rate,bearing=angle,range=distance,truth_x=east,truth_y=north,"
+      "truth_yaw=heading";
+  const Outcome page =
+      waymark({"view", map_, "--log", folder_ / "drive.csv", "--columns", columns, "-o", folder_ / "v.html"});
+  EXPECT_EQ(page.code, 0) << page.err;
+  const Outcome made =
+      waymark({"map", folder_ / "drive.csv", "--columns", columns, "-o", folder_ / "made.gpkg"});
+  EXPECT_THAT(made.err, testing::Not(HasSubstr("recognised as t"))) << made.err;
+}
+
 TEST_F(CsvLog, SaysWhatIsWrong) {
   const auto refusal_of = [&](const std::string& csv, const std::string& columns) {
     const Outcome said = run(csv, {"--start", "0,0,0", "--columns", columns});
