@@ -102,6 +102,7 @@ std::string heading(Group group) {
 std::string full_help(const Argument& argument) {
   std::string text = argument.help;
   if (!argument.choices.empty()) text += fmt::format(": {}", fmt::join(argument.choices, ", "));
+  if (takes_list(argument)) text += "; @FILE for those that a text file lists";
   if (!argument.otherwise.empty()) text += " (default: " + argument.otherwise + ")";
   if (!argument.former.empty()) text += " (formerly " + argument.former + ")";
   return text;

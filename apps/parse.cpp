@@ -4,9 +4,11 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <system_error>
 
 #include "core/error.hpp"
+#include "core/text_file.hpp"
 #include "workflows/parse_number.hpp"
 
 namespace waymark::apps {
@@ -31,6 +33,22 @@ std::string one_of(const Argument& argument, const std::string& word) {
               nearest.empty() ? "" : "did you mean '" + nearest + "'?");
 }
 
+/// Returns the lines of FILE for a word @FILE, the word itself if a file has this very name. Lines are names
+/// of files, never options: the list may be another person's.
+std::vector<std::string> listed_files(const std::string& word) {
+  std::error_code unknown;
+  if (word.size() < 2 || word[0] != '@' || std::filesystem::exists(word, unknown)) return {word};
+  std::istringstream lines(read_text(word.substr(1), "the list of files", ErrorCode::usage));
+  std::vector<std::string> files;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.ends_with('\r')) line.pop_back();
+    if (!line.empty()) files.push_back(std::move(line));
+  }
+  if (files.empty())
+    throw Error(ErrorCode::usage, "the list of files is empty", word.substr(1), "one name a line");
+  return files;
+}
+
 struct Store {
   const Argument& argument;
   const std::vector<std::string>& words;
@@ -46,7 +64,14 @@ struct Store {
     for (const auto& word : words) into->push_back(workflows::parse_number(display_name(argument), word));
   }
   void operator()(std::vector<std::string>* into) const {
-    for (const auto& word : words) into->push_back(one_of(argument, word));
+    for (const auto& word : words) {
+      if (!takes_list(argument)) {
+        into->push_back(one_of(argument, word));
+        continue;
+      }
+      const std::vector<std::string> files = listed_files(word);
+      into->insert(into->end(), files.begin(), files.end());
+    }
   }
 };
 
@@ -201,6 +226,10 @@ std::string synopsis(const Argument& argument) {
   if (!argument.flag()) text += " " + argument.value;
   if (!argument.required) text = "[" + text + "]";
   return repeatable(argument) && !argument.value.ends_with("...") ? text + "..." : text;
+}
+
+bool takes_list(const Argument& argument) {
+  return argument.value.ends_with("...") && argument.offer != Offer::nothing && argument.choices.empty();
 }
 
 std::string display_name(const Argument& argument) {

@@ -23,6 +23,9 @@ void require(const std::string& name, std::span<const Argument> arguments);
 /// Returns an argument in a synopsis: "MAP.gpkg", "-o MAP.gpkg", "[--type T]...".
 std::string synopsis(const Argument& argument);
 
+/// Returns whether an argument takes any number of files, and so @FILE for the files that a text file lists.
+bool takes_list(const Argument& argument);
+
 /// Returns the long name, else the short one, else the placeholder of a positional word.
 std::string display_name(const Argument& argument);
 

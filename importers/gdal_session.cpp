@@ -29,7 +29,18 @@ bool begins_like_las(const std::string& path) {
   return is_las;
 }
 
+/// Returns what a file system says that must not be used; GDAL's drivers drop it.
+std::string refusal_of_file_system(const std::string& path) {
+  const GdalListener gdal;
+  VSILFILE* const file = path.starts_with("/vsi") ? VSIFOpenL(path.c_str(), "rb") : nullptr;
+  if (file != nullptr) VSIFCloseL(file);
+  const std::string said = gdal.error_about(path);
+  return said.find("--allow-network") == said.npos ? "" : said;
+}
+
 [[noreturn]] void refuse(const std::string& path, const std::string& said) {
+  if (const std::string reason = refusal_of_file_system(path); !reason.empty())
+    throw Error(ErrorCode::input, reason, path, "pass --allow-network if you trust what names the file");
   VSIStatBufL status;
   const bool exists = VSIStatL(path.c_str(), &status) == 0;
   if (!exists && is_plain_path(path))

@@ -49,8 +49,11 @@ std::vector<std::string> parts_of(const std::string& path) {
 std::uint64_t add_content(const std::string& path, pipeline::Sha256& sum) {
   const GdalListener gdal;
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(seekable_path(path).c_str(), "rb"));
-  if (!file)
-    throw Error(ErrorCode::input, "the file cannot be read", path, "check that it exists and may be read");
+  if (!file) {
+    const std::string reason = gdal.error_about(path);
+    throw Error(ErrorCode::input, "the file cannot be read" + (reason.empty() ? "" : ": " + reason), path,
+                "check that it exists and may be read");
+  }
   std::uint64_t bytes = 0;
   std::string piece(kPiece, '\0');
   while (const std::size_t count = VSIFReadL(piece.data(), 1, kPiece, file.get())) {
@@ -95,15 +98,20 @@ InputFile hash_file(const std::string& path) {
     input.sha256 = sum.hex();
     return input;
   }
-  if (is_folder(path)) {
-    for (const std::string& file : files_in(path)) input.bytes += add_content(file, sum);
-    input.sha256 = sum.hex();
-    return input;
-  }
-  for (const std::string& file : expand_pattern(path))
-    for (const std::string& part : parts_of(file)) input.bytes += add_content(part, sum);
+  for (const std::string& file : hashed_files(path)) input.bytes += add_content(file, sum);
   input.sha256 = sum.hex();
   return input;
+}
+
+std::vector<std::string> hashed_files(const std::string& path) {
+  if (path.ends_with('/') && seekable_path(path) == path) return {};
+  if (is_folder(path)) return files_in(path);
+  std::vector<std::string> files;
+  for (const std::string& file : expand_pattern(path)) {
+    const std::vector<std::string> parts = parts_of(file);
+    files.insert(files.end(), parts.begin(), parts.end());
+  }
+  return files;
 }
 
 std::vector<std::string> raster_file_list(const std::string& raster) {

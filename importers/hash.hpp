@@ -12,6 +12,10 @@ namespace waymark::importers {
 /// Reads in pieces: about 400 MB/s, 1 MiB of memory. Throws Error{input} if a file cannot be read.
 InputFile hash_file(const std::string& path);
 
+/// Lists the files whose content hash_file() reads, in its order; none for a path that ends in '/'. Throws
+/// Error{input} for a pattern that matches no file.
+std::vector<std::string> hashed_files(const std::string& path);
+
 /// Lists the files of a raster in GDAL's order, the raster itself first if it is a file. Throws Error{input}
 /// if GDAL cannot open it.
 std::vector<std::string> raster_file_list(const std::string& raster);

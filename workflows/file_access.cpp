@@ -37,7 +37,7 @@ constexpr std::array<std::string_view, 13> kPrefixes{
 constexpr const char* kDatabases =
     "PostgreSQL PostGISRaster MySQL MSSQLSpatial ODBC OCI MongoDBv3 HANA GeoRaster";
 
-constexpr const char* kNotAllowed = "%s is on the network, which --allow-network permits";
+constexpr const char* kNotAllowed = "%s: it is on the network, which --allow-network permits";
 
 /// Opens nothing, in place of a file system of the network.
 void* refuse_file(void*, const char* file, const char*) {
@@ -110,10 +110,11 @@ void refuse_network() {
   constexpr std::array kEnds{"/", "?", "_streaming/"};
   // GDAL forgets the handlers that are replaced: a leak, were they not kept here.
   static std::array<const VSIFilesystemHandler*, kFileSystems.size() * kEnds.size()> replaced;
+  static std::array<std::string, replaced.size()> prefixes;  // GDAL keeps pointers to their characters
   std::size_t count = 0;
   for (const std::string_view name : kFileSystems)
     for (const char* end : kEnds) {
-      const std::string prefix = std::string(name) + end;
+      const std::string& prefix = prefixes[count] = std::string(name) + end;
       replaced[count++] = VSIFileManager::GetHandler(prefix.c_str());
       VSIInstallPluginHandler(prefix.c_str(), callbacks.get());
     }

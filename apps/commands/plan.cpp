@@ -77,6 +77,7 @@ class PlanJob final : public Command {
     const pipeline::Plan units = pipeline::plan(job.pipeline, workflows::run_options(request, callbacks));
     const pipeline::PlanCommand call{.job = job_,
                                      .work = work_,
+                                     .options = options_of_calls(session),
                                      .settings = settings_,
                                      .map = map_,
                                      .sensor = sensor_,
@@ -91,6 +92,14 @@ class PlanJob final : public Command {
   }
 
  private:
+  /// Without these a call would open other files than the plan, or none.
+  static std::vector<std::string> options_of_calls(const Session& session) {
+    std::vector<std::string> words;
+    if (session.allow_network) words.emplace_back("--allow-network");
+    for (const std::string& setting : session.gdal_config) words.insert(words.end(), {"--config", setting});
+    for (const std::string& file : session.plug_ins) words.insert(words.end(), {"--plugin", file});
+    return words;
+  }
   static std::vector<std::string> stages_of(const pipeline::Plan& plan) {
     std::vector<std::string> names;
     for (std::size_t stage = 0; stage < plan.stage_count(); ++stage)

@@ -66,6 +66,9 @@ class MosaicDem : public ImportedDem {
   double height_sd() const override { return import_.height_sd.value; }
   std::vector<std::string> files() const override { return import_.files; }
   const std::vector<std::string>& warnings() const override { return warnings_; }
+  bool has_square_blocks() const override {
+    return std::ranges::all_of(mosaic_.headers(), &RasterHeader::square_blocks);
+  }
   const DemImport& import() const override { return import_; }
 
  private:

@@ -31,6 +31,8 @@ class ImportedDem : public DemSource {
   /// Returns warnings, one line each, in a fixed order: seams that disagree, a constant DEM, an unknown
   /// height unit, a layout that is slow to read.
   virtual const std::vector<std::string>& warnings() const = 0;
+  /// Returns whether a square of cells is read without whole rows of its file.
+  virtual bool has_square_blocks() const = 0;
   /// Returns the options it was opened with; opening with them again gives the same heights.
   virtual const DemImport& import() const = 0;
 };

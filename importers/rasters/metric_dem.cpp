@@ -64,6 +64,7 @@ class MetricDem final : public ImportedDem {
   double height_sd() const override { return source_->height_sd(); }
   std::vector<std::string> files() const override { return source_->files(); }
   const std::vector<std::string>& warnings() const override { return warnings_; }
+  bool has_square_blocks() const override { return source_->has_square_blocks(); }
   const DemImport& import() const override { return source_->import(); }
 
   HeightWindow read(const Window& window) const override {

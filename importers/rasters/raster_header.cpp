@@ -245,6 +245,8 @@ RasterHeader read_header(GDALDataset& dataset, const std::string& path, const Ra
   header.south_up = transform && (*transform)[5] > 0;
   check_coordinates(header);
   band.GetBlockSize(&header.block_columns, &header.block_rows);
+  header.square_blocks =
+      header.block_columns <= 1024 && std::string_view(dataset.GetDriver()->GetDescription()) != "VRT";
   header.masked = (band.GetMaskFlags() & (GMF_ALL_VALID | GMF_NODATA)) == 0;
   header.cells = cell_type(band.GetRasterDataType(), header.masked);
   header.heights = height_scale(band, reading, header);

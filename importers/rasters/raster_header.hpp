@@ -42,6 +42,8 @@ struct RasterHeader {
   bool south_up = false;  ///< the first row of the file is the southernmost
   int band = 1;           ///< from 1
   int block_columns = 1, block_rows = 1;
+  bool square_blocks =
+      false;  ///< none has more than 1024 columns; virtual rasters hide those of their sources
   CellType cells = CellType::float64;
   bool masked = false;  ///< a mask band or alpha channel marks the valid cells
   HeightScale heights;

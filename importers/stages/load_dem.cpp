@@ -87,7 +87,9 @@ struct LoadDem {
     for (const std::string& warning : opened->warnings()) unit.warn(warning);
     const GridGeometry& grid = opened->geometry();
     unit.write(dem, DemHandle(opened));
-    unit.write(tiles, tiles_of(grid.columns, grid.rows, options.tile_cells));
+    std::vector<pipeline::Tile> all = tiles_of(grid.columns, grid.rows, options.tile_cells);
+    if (opened->has_square_blocks()) rank_along_curve(all);
+    unit.write(tiles, std::move(all));
   }
 };
 

@@ -60,6 +60,7 @@ struct PlanCommand {
   std::string job;   ///< job file
   std::string work;  ///< work folder shared by all machines
   std::string program = "waymark";
+  std::vector<std::string> options = {};   ///< words of every call, such as --allow-network
   std::vector<std::string> settings = {};  ///< STAGE.OPTION=VALUE of every call
   std::string map = {};         ///< the last call writes it; empty: the plan ends with the last stage
   std::string sensor = {};      ///< name or file of the profile that the map records; empty: none
@@ -89,8 +90,8 @@ using FileHasher = std::function<InputFile(const std::string& path)>;
 InputFile hash_plain_file(const std::string& path);
 
 /// Part of the work done by one process: `index` of `count`, from 1.
-/// Tiles and images are dealt out in turn. A map-scope unit is run by every shard that finds its inputs
-/// complete, so the last one finishes the job.
+/// Images are dealt out in turn; the tiles of a shard are neighbours, which read the same blocks of a raster.
+/// A map-scope unit is run by every shard that finds its inputs complete, so the last one finishes the job.
 struct Shard {
   int index = 1, count = 1;
 };

@@ -11,6 +11,8 @@ struct Tile {
   std::int64_t index = 0;            ///< in row-major order of the tiling, from 0
   std::int64_t column = 0, row = 0;  ///< of the tiling
   Window cells;                      ///< tiles are disjoint and cover the grid
+  std::int64_t rank = 0;             ///< order in which tiles run, and are divided into shards; no result
+                                     ///< depends on it
 
   friend bool operator==(const Tile&, const Tile&) = default;
 };

@@ -8,6 +8,7 @@
 #include <sstream>
 #include <string>
 
+#include "made_dem.hpp"
 #include "program.hpp"
 
 namespace waymark::test {
@@ -180,6 +181,32 @@ TEST(CommandLine, FormerNamesOfOptionsAreReadWithAWarning) {
   EXPECT_THAT(waymark({"evaluate", "landmarks", "none.csv", "--truth", "none.csv", "--share", "2"}).err,
               StartsWith("warning: --share was renamed: use --tolerance\nerror: "));
   EXPECT_THAT(waymark({"allometry", "--help"}).out, HasSubstr("(formerly --least-trees)"));
+}
+
+TEST(CommandLine, FilesMayBeListedInAFile) {
+  const TempFolder folder;
+  const std::string left = make_dem(folder / "left.tif", twin_peaks()), map = folder / "map.gpkg";
+  MadeDem east = twin_peaks();
+  east.geotransform[0] += 7000;
+  const std::string right = make_dem(folder / "right.tif", east);
+  write_text(folder / "list.txt", left + "\r\n\n" + right);
+  const auto job_of = [](const std::vector<std::string>& files) {
+    std::vector<std::string> words{"peaks", "--print-job"};
+    words.insert(words.end(), files.begin(), files.end());
+    return waymark(words);
+  };
+  EXPECT_EQ(job_of({"@" + (folder / "list.txt")}).out, job_of({left, right}).out);
+  EXPECT_THAT(waymark({"peaks", "--help"}).out, HasSubstr("@FILE"));
+  const Outcome none = job_of({"@" + (folder / "none.txt")});
+  EXPECT_EQ(none.code, 2);
+  EXPECT_THAT(none.err, HasSubstr("cannot read the list of files"));
+  write_text(folder / "empty.txt", "\n");
+  EXPECT_THAT(job_of({"@" + (folder / "empty.txt")}).err, HasSubstr("the list of files is empty"));
+  // A line is a file, whatever it looks like, and does not permit the network.
+  write_text(folder / "hostile.txt", "--plugin=x.so\n");
+  EXPECT_THAT(waymark({"peaks", "@" + (folder / "hostile.txt"), "-o", map}).err, HasSubstr("--plugin=x.so"));
+  write_text(folder / "remote.txt", "/vsicurl/http://127.0.0.1:9/a.tif\n");
+  EXPECT_THAT(waymark({"peaks", "@" + (folder / "remote.txt"), "-o", map}).err, HasSubstr("--allow-network"));
 }
 
 TEST(CommandLine, GlobalOptionsStandBeforeOrAfterTheCommand) {

@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <nlohmann/json.hpp>
+
 #include "made_dem.hpp"
 #include "program.hpp"
 
@@ -86,6 +88,65 @@ TEST_F(Network, IsReachedIfAllowedOrTyped) {
   EXPECT_GT(port_.connections(), 0);
   peaks(source);
   EXPECT_GT(port_.connections(), 0);
+}
+
+/// A DEM on a server of this machine, and the words that run lines of bash in its folder beside that server.
+class DemOnAServer : public testing::Test {
+ protected:
+  void SetUp() override {
+    MadeDem dem = hills(1500, 1500);
+    dem.compressed_blocks = true;
+    std::filesystem::create_directory(folder_ / "served");
+    make_dem(folder_ / "served/hills.tif", dem);
+    bash("touch -d 2020-01-01 '" + (folder_ / "served/hills.tif") + "'; ln -s \"$WAYMARK\" '" +
+         (folder_ / "waymark") + "'");
+  }
+  /// Runs lines in which $server is the address, and returns what the server sent last.
+  Outcome beside_server(const std::string& lines) {
+    write_text(folder_ / "lines", "set -e\n" + lines);
+    return bash("cd '" + folder_.path().string() +
+                "'; export PATH=$PWD:$PATH SOURCE_DATE_EPOCH=0; timeout 300 /usr/bin/python3 '" +
+                WAYMARK_SOURCE_DIR + "/tests/apps/serve_folder.py' served env server={url} bash lines");
+  }
+  static std::uintmax_t bytes_sent(const Outcome& said) {
+    std::uintmax_t bytes = 0;
+    const auto served = nlohmann::json::parse(said.out.substr(said.out.rfind("[[")));
+    for (const auto& answer : served) bytes += answer.at(1).get<std::uintmax_t>();
+    return bytes;
+  }
+  std::string landmarks(const std::string& map) {
+    return waymark({"query", folder_ / map, "--format", "csv"}).out;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(DemOnAServer, HasTheSummitsOfTheFile) {
+  const Outcome said = beside_server(
+      "waymark peaks /vsicurl/$server/hills.tif -o map.gpkg -q\n"
+      "waymark peaks served/hills.tif -o local.gpkg -q\n");
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_GT(landmarks("map.gpkg").size(), 1000U);
+  EXPECT_EQ(landmarks("map.gpkg"), landmarks("local.gpkg"));
+}
+
+// The calls of a plan read the DEM whole once among them all, for its checksum, and not each of the thirteen.
+TEST_F(DemOnAServer, IsReadByTheCallsOfAPlanFewTimes) {
+  if (bash("parallel --version | grep GNU").code != 0) GTEST_SKIP() << "needs GNU parallel";
+  const Outcome said = beside_server(
+      "waymark peaks /vsicurl/$server/hills.tif --tile-cells 128 --print-job > job.json\n"
+      "! waymark plan job.json -q 2> refusal\n"
+      "waymark plan job.json --format parallel --allow-network --config GDAL_HTTP_TIMEOUT=60 --shards 8"
+      " -o map.gpkg > run.sh\n"
+      "sh run.sh\n"
+      "waymark peaks served/hills.tif -o local.gpkg -q\n");
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(text_of(folder_ / "refusal"), testing::HasSubstr("--allow-network"));
+  EXPECT_THAT(text_of(folder_ / "run.sh"),
+              testing::HasSubstr("--allow-network --config '\\''GDAL_HTTP_TIMEOUT=60'\\''"));
+  EXPECT_EQ(landmarks("map.gpkg"), landmarks("local.gpkg"));
+  const auto size = std::filesystem::file_size(folder_ / "served/hills.tif");
+  ASSERT_GT(size, 1U << 20);
+  EXPECT_LT(bytes_sent(said), 8 * size);
 }
 
 }  // namespace

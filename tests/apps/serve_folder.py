@@ -38,6 +38,7 @@ class Handler(http.server.SimpleHTTPRequestHandler):
         self.send_header('Content-Type', 'application/octet-stream')
         self.send_header('Content-Range', f'bytes {wanted[1]}-{int(wanted[1]) + len(part) - 1}/{os.path.getsize(path)}')
         self.send_header('Content-Length', str(len(part)))
+        self.send_header('Last-Modified', self.date_time_string(os.path.getmtime(path)))
         self.end_headers()
         self.wfile.write(part)
 

@@ -11,6 +11,7 @@
 #include "core/keep_inputs.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/hash.hpp"
+#include "importers/keep_hashes.hpp"
 #include "importers/points/find_las.hpp"
 #include "pipeline/craters/dem_blocks.hpp"
 #include "workflows/file_access.hpp"
@@ -151,6 +152,8 @@ pipeline::RunOptions run_options(const MapRequest& request, const Callbacks& cal
   pipeline::RunOptions options = request.run;
   options.progress = callbacks.progress;
   options.hash_file = importers::hash_file;
+  if (!options.work.empty())
+    options.hash_file = importers::keep_hashes(options.hash_file, options.work / "inputs");
   options.max_bytes_in_memory = kScratchInMemory;
   if (!options.types) options.types = &all_types();
   return options;

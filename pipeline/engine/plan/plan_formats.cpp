@@ -35,6 +35,7 @@ CallResources resources_of(const PlanCommand& command, const std::string& stage)
 std::string run_command(const PlanCommand& command, const std::string& stage) {
   std::string call = fmt::format("{} run {} --work {}", quote_for_shell(command.program),
                                  quote_for_shell(command.job), quote_for_shell(command.work));
+  for (const std::string& word : command.options) call += " " + quote_for_shell(word);
   for (const std::string& setting : command.settings) call += " --set " + quote_for_shell(setting);
   if (command.confined) call += " --confined";
   if (const int threads = resources_of(command, stage).processors; threads > 0)

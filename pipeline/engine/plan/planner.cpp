@@ -115,7 +115,10 @@ std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& ste
                             {"types", types},
                             {"files", nlohmann::json::array()},
                             {"reads", nlohmann::json::array()}};
-  if (unit.tile) key["tile"] = Codec<std::vector<Tile>>::encode({*unit.tile});
+  if (std::optional<Tile> tile = unit.tile) {
+    tile->rank = 0;
+    key["tile"] = Codec<std::vector<Tile>>::encode({*tile});
+  }
   for (const InputFile& file : files) key["files"].push_back(file.sha256);
   if (unit.image) key["image"] = unit.image->content;
   for (const std::size_t read : unit.after)

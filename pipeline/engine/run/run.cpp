@@ -167,8 +167,10 @@ void Run::run_stage(std::size_t stage) {
   const auto begin = Clock::now();
   const std::size_t first = plan_.begins[stage], end = plan_.begins[stage + 1];
   ProgressMeter progress(options_.progress, step(stage).spec().name, static_cast<std::int64_t>(end - first));
+  const std::vector<std::size_t> order = run_order(plan_, stage);
   tbb::parallel_for(
-      first, end, [&](std::size_t unit) { do_unit(stage, unit, progress); }, tbb::simple_partitioner());
+      std::size_t{0}, order.size(), [&](std::size_t i) { do_unit(stage, first + order[i], progress); },
+      tbb::simple_partitioner());
   progress.finish();
   seconds_[stage] = seconds_since(begin);
 }

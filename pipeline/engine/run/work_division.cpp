@@ -6,6 +6,9 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
+#include <optional>
+#include <vector>
 
 namespace waymark::pipeline {
 namespace {
@@ -49,6 +52,18 @@ void select_unit(const Plan& plan, const std::string& id, std::vector<UnitState>
   select(plan, static_cast<std::size_t>(wanted - plan.units.begin()), states);
 }
 
+/// Returns by index the places of the tiles in run_order().
+std::vector<std::size_t> tile_ranks(const Plan& plan) {
+  for (std::size_t stage = 0; stage < plan.stage_count(); ++stage) {
+    if (plan.begins[stage] == plan.begins[stage + 1] || !plan.units[plan.begins[stage]].tile) continue;
+    const std::vector<std::size_t> order = run_order(plan, stage);
+    std::vector<std::size_t> ranks(order.size());
+    for (std::size_t rank = 0; rank < order.size(); ++rank) ranks[order[rank]] = rank;
+    return ranks;
+  }
+  return {};
+}
+
 }  // namespace
 
 void check_run_options(const RunOptions& options, const Pipeline& pipeline) {
@@ -77,11 +92,26 @@ void check_run_options(const RunOptions& options, const Pipeline& pipeline) {
   check_stage(options.stage, "run");
 }
 
+std::vector<std::size_t> run_order(const Plan& plan, std::size_t stage) {
+  std::vector<std::size_t> positions(plan.begins[stage + 1] - plan.begins[stage]);
+  std::iota(positions.begin(), positions.end(), std::size_t{0});
+  std::ranges::stable_sort(positions, {}, [&](std::size_t position) {
+    const std::optional<Tile>& tile = plan.units[plan.begins[stage] + position].tile;
+    return tile ? tile->rank : 0;
+  });
+  return positions;
+}
+
 void divide_work(const Plan& plan, const RunOptions& options, std::vector<UnitState>& states) {
   if (!options.unit.empty()) return select_unit(plan, options.unit, states);
+  const std::vector<std::size_t> ranks = options.shard ? tile_ranks(plan) : std::vector<std::size_t>{};
   const auto is_in_shard = [&](const Unit& unit) {
     const auto index = unit.index();
-    return !options.shard || !index || *index % options.shard->count == options.shard->index - 1;
+    if (!options.shard || !index) return true;
+    const auto number = static_cast<std::size_t>(*index),
+               mine = static_cast<std::size_t>(options.shard->index - 1),
+               count = static_cast<std::size_t>(options.shard->count);
+    return (unit.tile ? ranks.at(number) * count / ranks.size() : number % count) == mine;
   };
   if (!options.stage.empty()) return select_of_stage(plan, options.stage, is_in_shard, states);
   for (std::size_t i = 0; i < states.size(); ++i)

@@ -46,9 +46,24 @@ TEST(LoadDem, WritesTheDemAndItsTiles) {
   EXPECT_EQ(dem->geometry().columns, 150);
   const auto& tiles = result.artifact<std::vector<pipeline::Tile>>("tiles");
   ASSERT_EQ(tiles.size(), 6u);
-  EXPECT_EQ(tiles[5], (pipeline::Tile{5, 2, 1, {128, 64, 22, 36}}));
+  EXPECT_EQ(tiles[5], (pipeline::Tile{5, 2, 1, {128, 64, 22, 36}, 5}));
   ASSERT_EQ(result.inputs.size(), 1u);
   EXPECT_EQ(result.inputs[0], hash_file(file));
+}
+
+TEST(LoadDem, RanksTilesByTheBlocksOfTheFiles) {
+  const auto ranks = [](std::vector<std::string> options) {
+    Grid<double> cells(1100, 300, 1.);
+    cells(3, 3) = 2;
+    const auto file =
+        write_raster({.path = "/vsimem/wide.tif", .cells = cells, .options = std::move(options)});
+    const pipeline::RunResult result = load(R"({"files": [")" + file + R"("], "tile_cells": 550})");
+    std::vector<std::int64_t> all;
+    for (const auto& tile : result.artifact<std::vector<pipeline::Tile>>("tiles")) all.push_back(tile.rank);
+    return all;
+  };
+  EXPECT_THAT(ranks({"TILED=YES"}), ElementsAre(0, 1));
+  EXPECT_THAT(ranks({"TILED=NO"}), ElementsAre(0, 0)) << "strips: a row of tiles reads them once";
 }
 
 TEST(LoadDem, PassesWarningsOn) {

@@ -139,8 +139,12 @@ TEST_F(PlanTest, CallsAskForResources) {
 }
 
 TEST_F(PlanTest, EndsInTheMapWithTheSettings) {
-  const PlanCommand call{.job = "j.json", .work = "w", .settings = {"a.b=c d"}, .map = "{m}.gpkg"};
-  const std::string run = "waymark run j.json --work w --set 'a.b=c d'";
+  const PlanCommand call{.job = "j.json",
+                         .work = "w",
+                         .options = {"--config", "A=b", "--allow-network"},
+                         .settings = {"a.b=c d"},
+                         .map = "{m}.gpkg"};
+  const std::string run = "waymark run j.json --work w --config 'A=b' --allow-network --set 'a.b=c d'";
   const std::string snakefile = plan_as_snakemake(the_plan(), call);
   EXPECT_THAT(snakefile, HasSubstr("\nrule map:\n    input: \"w/shards/list_numbers-"));
   EXPECT_THAT(snakefile,

@@ -246,10 +246,10 @@ TEST_F(RunTest, StagesThatCannotRunAreRefused) {
                                   "is not done\n"));
   EXPECT_THAT(early, testing::EndsWith("\n  first do --stage square_number"));
   EXPECT_THAT(ran(), ElementsAre(1, 0, 0)) << "nothing but the list";
-  // One shard of two is not enough; both are.
+  // One shard of two is not enough, here the first two of four tiles; both are.
   run(pipeline, {.work = work, .shard = Shard{1, 2}, .stage = "square_number"});
   EXPECT_THAT(message_of([&] { run(pipeline, {.work = work, .stage = "sum_squares"}); }),
-              testing::HasSubstr("square_number/tile_000001, which is not done"));
+              testing::HasSubstr("square_number/tile_000002, which is not done"));
   run(pipeline, {.work = work, .shard = Shard{2, 2}, .stage = "square_number"});
   EXPECT_EQ(sum_of(run(pipeline, {.work = work, .stage = "sum_squares"})), sum_of(run(pipeline)));
 }
