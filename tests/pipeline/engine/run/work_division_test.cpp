@@ -5,7 +5,8 @@
 
 #include <set>
 
-namespace waymark::pipeline {
+namespace waymark::test {
+using namespace pipeline;
 namespace {
 
 /// Two stages over the same tiles, which run column by column.
@@ -65,4 +66,4 @@ TEST(WorkDivision, EachTileIsInOneShardAndShardsAreEqual) {
 }
 
 }  // namespace
-}  // namespace waymark::pipeline
+}  // namespace waymark::test
