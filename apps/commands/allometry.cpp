@@ -35,20 +35,41 @@ class AllometryCommand final : public Command {
              Argument{"--plot", "COLUMN", &request_.columns.plot, "Column whose trees are held out together"},
              Argument{"--min-trees", "N", &request_.min_trees,
                       "Species with fewer trees get no row of their own"}
-                 .formerly("--least-trees")},
-        .examples = {
-            {"waymark allometry fit plots.csv -o spruce.csv", "A table for `waymark trees --allometry`"},
-            {"waymark allometry fit als.csv -o table.csv --height hmax --diameter DBH",
-             "Diameters from heights measured by a laser"}}};
+                 .formerly("--least-trees"),
+             format_option(&format_)},
+        .examples = {{"waymark allometry fit plots.csv -o spruce.csv",
+                      "A table for `waymark trees --allometry`"},
+                     {"waymark allometry fit als.csv -o table.csv --height hmax --diameter DBH",
+                      "Diameters from heights measured by a laser"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
-    workflows::fit_allometry(request_, console_callbacks(session));
+    const auto rows = workflows::fit_allometry(request_, console_callbacks(session, format_));
+    if (format_ != "json") return 0;
+    std::string objects;
+    for (const pipeline::Allometry& row : rows)
+      objects += (objects.empty() ? "" : ",") + result_object({{"species", row.species},
+                                                               {"form", pipeline::to_string(row.form)},
+                                                               {"a", row.a},
+                                                               {"b", row.b},
+                                                               {"sigma", row.sigma},
+                                                               {"tree_count", row.trees},
+                                                               {"rmse_cm", row.rmse},
+                                                               {"held_out_rmse_cm", row.held_out_rmse},
+                                                               {"held_out_bias_cm", row.held_out_bias}});
+    print_result(result_keys(), {{"output", request_.output}, {"rows", ResultJson{"[" + objects + "]"}}});
     return 0;
   }
 
  private:
-  std::string what_;
+  static std::vector<ResultKey> result_keys() {
+    return {{"output", ResultKind::text, "Table that was written"},
+            {"rows", ResultKind::objects,
+             "Its rows: species, form, a, b, sigma, tree_count and the errors in cm"}};
+  }
+
+  std::string what_, format_ = "text";
   workflows::AllometryRequest request_;
 };
 

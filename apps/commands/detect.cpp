@@ -11,7 +11,8 @@
 namespace waymark::apps {
 namespace {
 
-std::vector<Argument> detect_arguments(workflows::DetectRequest& request, const DetectionHelp& help) {
+std::vector<Argument> detect_arguments(workflows::DetectRequest& request, std::string& format,
+                                       const DetectionHelp& help) {
   const std::vector<std::string> kinds = workflows::image_detectors().names();
   std::vector<Argument> arguments = {
       Argument{"", fmt::format("{}", fmt::join(kinds, "|")), &request.kind, "What to detect"}
@@ -49,6 +50,7 @@ std::vector<Argument> detect_arguments(workflows::DetectRequest& request, const 
   arguments.push_back(
       Argument{"--tile-pixels", "N", &request.piece, "Side of the pieces a large image is searched in"}
           .or_else("8192"));
+  arguments.push_back(format_option(&format));
   return arguments;
 }
 
@@ -70,28 +72,45 @@ class Detect final : public Command {
             "properties; a GeoPackage is a map like any other.\n\n"
             "The direction of the light is estimated from the image unless it is given. Heights of rocks "
             "need --sun-elevation and the size of a pixel.",
-        .arguments = detect_arguments(request_, help),
-        .examples = {
-            {"waymark detect craters mosaic.png -o craters.csv", "Pixels; the sun is estimated"},
-            {"waymark detect rocks ortho.tif -o rocks.gpkg --sun-azimuth 270 --sun-elevation 30",
-             "A map with heights"},
-            {"waymark detect rocks descent.png -o rocks.csv --image-sun-angle 135 --sun-elevation 25 "
-             "--gsd 0.05",
-             "Metres without a georeference"},
-            {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
-             "Another method, detections of high confidence only"},
-            {"waymark detect trees naip.tif -o trees.gpkg",
-             "Crowns in an RGB or RGB + near infrared image"}}};
+        .arguments = detect_arguments(request_, format_, help),
+        .examples =
+            {{"waymark detect craters mosaic.png -o craters.csv", "Pixels; the sun is estimated"},
+             {"waymark detect rocks ortho.tif -o rocks.gpkg --sun-azimuth 270 --sun-elevation 30",
+              "A map with heights"},
+             {"waymark detect rocks descent.png -o rocks.csv --image-sun-angle 135 --sun-elevation 25 "
+              "--gsd 0.05",
+              "Metres without a georeference"},
+             {"waymark detect craters ctx.tif -o craters.geojson --method edges --min-confidence 0.8",
+              "Another method, detections of high confidence only"},
+             {"waymark detect trees naip.tif -o trees.gpkg",
+              "Crowns in an RGB or RGB + near infrared image"}},
+        .result = result_keys()};
   }
 
   int run(const Session& session) override {
     request_.threads = static_cast<int>(session.threads);
     request_.command_line = session.command_line;
-    workflows::detect(request_, console_callbacks(session));
+    const workflows::DetectResult found = workflows::detect(request_, console_callbacks(session, format_));
+    if (format_ == "json")
+      print_result(result_keys(),
+                   {{"output", request_.output},
+                    {"detections", static_cast<std::int64_t>(found.detections.detections.size())},
+                    {"outside", found.outside},
+                    {"light", text_or_null(found.light)},
+                    {"warnings", found.warnings}});
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"output", ResultKind::text, "Table or map that was written"},
+            {"detections", ResultKind::integer, "Objects in it"},
+            {"outside", ResultKind::integer, "Objects outside the area of interest, which were dropped"},
+            {"light", ResultKind::text, "Direction of the light, in words; null if it was given"},
+            {"warnings", ResultKind::texts, "Reasons to doubt the result"}};
+  }
+
+  std::string format_ = "text";
   workflows::DetectRequest request_;
 };
 

@@ -201,6 +201,24 @@ class Results : public testing::Test {
     EXPECT_EQ(peaks["landmarks"]["mountain_top"], 2);
   }
 
+  void check_tables() {
+    const std::string image = make_dem(folder_ / "image.tif", hills(300, 200));
+    const ResultObject found =
+        result({"detect", "craters", image, "-o", folder_ / "c.csv", "--image-sun-angle", "30"});
+    const std::string rows = text_of(folder_ / "c.csv");
+    EXPECT_EQ(found["detections"], std::ranges::count(rows, '\n') - 1);
+    EXPECT_TRUE(found["light"].is_null());
+    std::string trees = "height,dbh\n";
+    for (int i = 0; i < 40; ++i)
+      trees += std::to_string(10 + i % 20) + "," + std::to_string(12 + i % 20) + "\n";
+    write_text(folder_ / "trees.csv", trees);
+    const ResultObject fit = result(
+        {"allometry", "fit", folder_ / "trees.csv", "-o", folder_ / "table.csv", "--diameter-unit", "cm"});
+    EXPECT_EQ(fit["rows"][0]["species"], "all");
+    EXPECT_EQ(fit["rows"][0]["tree_count"], 40);
+    EXPECT_GT(fit["rows"][0]["b"], 0);
+  }
+
   /// Five detections are too few to be located among 200 craters of the Moon.
   void check_locate() {
     Random random(5, "results of locate");
@@ -254,8 +272,9 @@ class Results : public testing::Test {
 
 TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   for (const char* command :
-       {"localize", "web", "merge", "edit", "stac", "report", "hazards", "register", "import", "map", "view",
-        "train", "route", "observability", "simulate", "restore", "reconstruct", "locate"})
+       {"localize", "web",     "merge",       "edit",   "stac",   "report",   "hazards",
+        "register", "import",  "map",         "view",   "train",  "route",    "observability",
+        "simulate", "restore", "reconstruct", "locate", "detect", "allometry"})
     EXPECT_TRUE(declared_.contains(command)) << command;
   check_import();
   check_merge_and_edit();
@@ -266,6 +285,7 @@ TEST_F(Results, EveryCommandPrintsTheDeclaredKeysAlone) {
   check_locate();
   check_drives();
   check_scenes();
+  check_tables();
   for (const auto& [command, keys] : declared_)
     EXPECT_TRUE(seen_.contains(keys)) << "no test runs " << command << " --format json";
 }
