@@ -44,6 +44,8 @@ class Export final : public Command {
                       Argument{"--aoi", "POLYGONS", &aoi_,
                                "Landmarks inside this area only; a .gpkg is then a map of the area"}
                           .offering(Offer::file),
+                      {"--min-confidence", "P", &options_.min_confidence,
+                       "Landmarks that exist with at least this probability, 0 to 1"},
                       Argument{"--crs", "CRS", &options_.crs, "CRS of the output"}.or_else("the map's"),
                       Argument{"--area", "KM2", &options_.area_km2,
                                "Counting area of a crater count (.scc, .diam)"}
@@ -70,6 +72,9 @@ class Export final : public Command {
   }
 
   int run(const Session&) override {
+    if (!(options_.min_confidence >= 0 && options_.min_confidence <= 1))
+      throw Error(ErrorCode::usage, fmt::format("--min-confidence is {:g}", options_.min_confidence), "",
+                  "it is a probability: 0 to 1");
     if (geodb::postgres::is_address(out_)) return export_to_server();
     if (const auto format = workflows::parse_robot_format(options_.driver)) return export_to_robot(*format);
     if (!aoi_.empty()) options_.inside = workflows::area_of_map(aoi_, map_).contains;
@@ -97,6 +102,7 @@ class Export final : public Command {
                                                             .output = out_,
                                                             .format = format,
                                                             .types = options_.types,
+                                                            .min_confidence = options_.min_confidence,
                                                             .overwrite = options_.overwrite});
     log_summary(fmt::format("{}: {} landmarks, {}\n", out_, count, options_.driver));
     return 0;
@@ -107,6 +113,9 @@ class Export final : public Command {
       throw Error(ErrorCode::usage,
                   "a database stores the whole map: --type, --crs and --format do not apply", out_,
                   "leave them out");
+    if (options_.min_confidence > 0)
+      throw Error(ErrorCode::usage, "--min-confidence does not apply to a database", out_,
+                  "export the likely landmarks to a .gpkg first, and that map then");
     refuse_others("a database");
     const geodb::PostgresSummary done = geodb::export_to_postgres(map_, out_);
     log_summary(

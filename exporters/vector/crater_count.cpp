@@ -158,6 +158,9 @@ ExportSummary export_crater_count(const fs::path& map_path, const std::string& o
   if (options.inside)
     throw Error(ErrorCode::usage, "a crater count needs all craters of its counting area", "--aoi",
                 "leave --aoi out");
+  if (options.min_confidence > 0)
+    throw Error(ErrorCode::usage, "a crater count needs all craters of its counting area", "--min-confidence",
+                "leave --min-confidence out, or export a map of likely craters first, and that map then");
   if (!options.overwrite && fs::exists(out))
     throw Error(ErrorCode::output, fmt::format("{} exists already", fs::path(out).filename().string()), out,
                 "remove it, choose another name, or allow it to be replaced with --overwrite");

@@ -34,6 +34,7 @@ struct Export {
   VectorFormat format;
   const Crs crs;
   std::function<bool(double, double)> inside;
+  double min_confidence;
   ExportSummary summary;
 
   void warn(std::vector<std::string> texts) {
@@ -71,6 +72,7 @@ class TypeReader {
     job_->map.visit(type_->name, [&](Landmark&& landmark) {
       const Eigen::Vector3d& at = landmark.position.xyz;
       if (job_->inside && !job_->inside(at.x(), at.y())) return;
+      if (job_->min_confidence > 0 && !(landmark.confidence >= job_->min_confidence)) return;
       some.push_back(std::move(landmark));
       if (some.size() == kAtOnce) flush();
     });
@@ -180,7 +182,7 @@ constexpr std::size_t kLandmarksInMemory = 10'000;  // 1 to 2 kB each
 
 void write_map_file(Export& job, const std::vector<std::string>& types, const fs::path& out) {
   geodb::check_before_copy(job.map.path());
-  const LandmarkChoice chosen{types, job.inside};
+  const LandmarkChoice chosen{types, job.inside, job.min_confidence};
   MapSubset subset = map_subset(job.map, chosen, job.crs);
   subset.contents.layers = subset_layers(job.map, chosen, job.crs, subset.warnings);
   geodb::write_map(out, subset.contents,
@@ -209,7 +211,12 @@ ExportSummary export_map(const fs::path& map_path, const std::string& out, const
                 "crater counts have one: OUT.scc or OUT.diam");
   const geodb::MapStore map = geodb::MapStore::open(map_path);
   const auto types = chosen_types(map, options.types);
-  Export job{map, format, output_crs(format, map.crs(), options.crs, map_path.string()), options.inside, {}};
+  Export job{map,
+             format,
+             output_crs(format, map.crs(), options.crs, map_path.string()),
+             options.inside,
+             options.min_confidence,
+             {}};
   job.summary.driver = format.driver;
   job.summary.crs = job.crs.id();
 

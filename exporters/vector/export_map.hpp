@@ -15,6 +15,7 @@ struct ExportOptions {
       {};  ///< any text Crs understands; empty: the map's, or EPSG:4326 if the format requires it
   /// Whether the position of a landmark in the map's CRS is inside the area of interest; empty: everywhere.
   std::function<bool(double x, double y)> inside = {};
+  double min_confidence = 0;            ///< leaves out landmarks of less, and of none, if above 0
   bool overwrite = false;               ///< false: an existing output is an error
   std::vector<std::string> label = {};  ///< values of a PDS4 label, "NAME=VALUE"
   /// That GDAL may take for a format it does not write in pieces: a FlatGeobuf that would take more has no

@@ -54,7 +54,7 @@ class SubsetReader {
     const LandmarkType& type = types_[id];
     std::vector<Landmark> found;
     map_->visit(type.name, rows, [&](Landmark&& landmark) {
-      if (!is_inside(landmark)) return;
+      if (!is_chosen(landmark)) return;
       landmark.type = id;
       found.push_back(std::move(landmark));
     });
@@ -94,7 +94,7 @@ class SubsetReader {
     map_->visit_rejected([&](Observation&& seen) {
       if (!seen.landmark_uid.empty()) {
         const auto landmark = map_->find(seen.landmark_uid);
-        if (!landmark || !is_inside(*landmark)) return;
+        if (!landmark || !is_chosen(*landmark)) return;
       } else if (!is_inside(seen)) {
         return;
       }
@@ -106,14 +106,14 @@ class SubsetReader {
  private:
   static constexpr std::int64_t kRows = 10'000;  // of a part
 
-  bool leaves_out() const { return transform_ || chosen_.inside; }
+  bool leaves_out() const { return transform_ || chosen_.inside || chosen_.min_confidence > 0; }
 
   /// Visits the chosen landmarks of a part with whether each has a position in the CRS.
   template <class Visit>
   void visit_chosen(std::size_t part, const Visit& visit) const {
     const auto& [id, rows] = ranges_[part];
     map_->visit(types_[id].name, rows, [&](Landmark&& landmark) {
-      if (!is_inside(landmark)) return;
+      if (!is_chosen(landmark)) return;
       const Eigen::Vector3d& at = landmark.position.xyz;
       const auto there = transform_ ? (*transform_)(at.x(), at.y()) : CrsTransform::XY{at.x(), at.y()};
       visit(landmark, std::isfinite(there.x) && std::isfinite(there.y));
@@ -125,6 +125,8 @@ class SubsetReader {
   bool is_inside(const Item& item) const {
     return !chosen_.inside || chosen_.inside(item.position.xyz.x(), item.position.xyz.y());
   }
+
+  bool is_chosen(const Landmark& landmark) const { return is_inside(landmark) && chosen_.likely(landmark); }
 
   bool keep(Observation& seen) const {
     const std::string& type = map_->types()[seen.type].name;

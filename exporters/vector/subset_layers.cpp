@@ -20,9 +20,10 @@ class LayerReader {
       : map_(&map), chosen_(chosen), name_(std::move(name)) {
     if (!map.crs().same_as(crs)) transform_.emplace(map.crs(), crs);
     const auto types = map.types().names();
-    chooses_all_ = !chosen.inside && std::ranges::all_of(types, [&](const std::string& type) {
-      return std::ranges::find(chosen.types, type) != chosen.types.end();
-    });
+    chooses_all_ = !chosen.inside && !(chosen.min_confidence > 0) &&
+                   std::ranges::all_of(types, [&](const std::string& type) {
+                     return std::ranges::find(chosen.types, type) != chosen.types.end();
+                   });
   }
 
   /// Returns the number of rows without a position in the CRS.
@@ -86,7 +87,7 @@ class LayerReader {
 
 bool LandmarkChoice::has(const geodb::MapStore& map, const Landmark& landmark) const {
   const std::string& type = map.types()[landmark.type].name;
-  return std::ranges::find(types, type) != types.end() &&
+  return std::ranges::find(types, type) != types.end() && likely(landmark) &&
          (!inside || inside(landmark.position.xyz.x(), landmark.position.xyz.y()));
 }
 

@@ -11,7 +11,11 @@ namespace waymark::exporters {
 struct LandmarkChoice {
   std::vector<std::string> types = {};                  ///< names
   std::function<bool(double x, double y)> inside = {};  ///< in the CRS of the map; empty: everywhere
+  double min_confidence = 0;                            ///< 0: any, and unknown ones
 
+  bool likely(const Landmark& landmark) const {
+    return !(min_confidence > 0) || landmark.confidence >= min_confidence;
+  }
   bool has(const geodb::MapStore& map, const Landmark& landmark) const;
 };
 
