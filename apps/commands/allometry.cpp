@@ -54,7 +54,7 @@ class AllometryCommand final : public Command {
                                                                {"a", row.a},
                                                                {"b", row.b},
                                                                {"sigma", row.sigma},
-                                                               {"trees", row.trees},
+                                                               {"tree_count", row.trees},
                                                                {"rmse_cm", row.rmse},
                                                                {"held_out_rmse_cm", row.held_out_rmse},
                                                                {"held_out_bias_cm", row.held_out_bias}});
@@ -65,7 +65,8 @@ class AllometryCommand final : public Command {
  private:
   static std::vector<ResultKey> result_keys() {
     return {{"output", ResultKind::text, "Table that was written"},
-            {"rows", ResultKind::objects, "Its rows: the columns of the table without source"}};
+            {"rows", ResultKind::objects,
+             "Its rows: species, form, a, b, sigma, tree_count and the errors in cm"}};
   }
 
   std::string what_, format_ = "text";

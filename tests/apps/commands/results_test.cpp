@@ -215,7 +215,7 @@ class Results : public testing::Test {
     const ResultObject fit = result(
         {"allometry", "fit", folder_ / "trees.csv", "-o", folder_ / "table.csv", "--diameter-unit", "cm"});
     EXPECT_EQ(fit["rows"][0]["species"], "all");
-    EXPECT_EQ(fit["rows"][0]["trees"], 40);
+    EXPECT_EQ(fit["rows"][0]["tree_count"], 40);
     EXPECT_GT(fit["rows"][0]["b"], 0);
   }
 
