@@ -14,7 +14,7 @@ import waymark
 
 # What Python spells otherwise than the command; None: it has no use for it.
 SPELLED = {
-    "detect": {},
+    "detect": {"format": None},
     "run": {"set": "settings", "shard": None, "format": None, "confined": None},
     "localize": {"ids": "use_identities", "set": "settings", "settings": None, "crs": "in_map_crs",
                  "format": None},
