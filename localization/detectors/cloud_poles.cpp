@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "localization/detectors/cloud_ground.hpp"
+#include "localization/detectors/upright_shape.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -18,22 +19,14 @@ constexpr double kLayer = 0.25;           // m
 constexpr int kLayers = 24;               // up to 6 m above the ground
 constexpr double kFoot = 0.3;             // m above the ground, below which kerbs and grass are
 constexpr double kCore = 0.35;            // m about the axis that belongs to a pole
+constexpr double kShape = 0.45;           // m about the mean of the points: reaches the sides of a stem
 constexpr int kMinCandidateLayers = 3;    // with points in 3 x 3 cells
 constexpr double kMaxRingFraction = 0.2;  // of a layer's points, in the ring around the core
 constexpr double kMaxGap = 1.0;           // m between rows of a far pole, or where a sign hides it
-constexpr double kPointSd = 0.03;         // m of a range, and of what the beam's width adds
-constexpr double kPriorRadius = 0.1, kPriorRadiusSd = 0.08;  // m, of poles in towns
-constexpr double kAzimuthStep =
-    0.0035;                          // rad between columns of usual scanners: a width is a number of columns
-constexpr double kRowReach = 2;      // m; columns of a wall seen at a flat angle are that far apart
-constexpr double kFlat = 0.93;       // cosine between such a wall and the line of sight
-constexpr double kStraight = -0.95;  // cosine between the neighbours on both sides
-constexpr double kSame = 0.6;        // m between axes of one pole
-
-struct RaisedPoint {
-  Eigen::Vector2f at;
-  float height;  // above the ground
-};
+constexpr double kRowReach = 2;           // m; columns of a wall seen at a flat angle are that far apart
+constexpr double kFlat = 0.93;            // cosine between such a wall and the line of sight
+constexpr double kStraight = -0.95;       // cosine between the neighbours on both sides
+constexpr double kSame = 0.6;             // m between axes of one pole
 
 /// Points above the ground, sorted into cells.
 class PointGrid {
@@ -161,56 +154,6 @@ FreePiece longest_free_piece(const PointGrid& grid, const Eigen::Vector2d& at, d
   return best;
 }
 
-/// Fits a circle to points seen from the origin: Gauss-Newton with the radius near that of usual poles, since
-/// few points see little of the arc.
-std::optional<CloudPole> fit_circle(const std::vector<Eigen::Vector2d>& points,
-                                    const CloudPoleOptions& options) {
-  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
-  for (const Eigen::Vector2d& p : points) mean += p / static_cast<double>(points.size());
-  const Eigen::Vector2d away = mean.normalized();
-  Eigen::Vector3d circle(mean.x() + kPriorRadius * away.x(), mean.y() + kPriorRadius * away.y(),
-                         kPriorRadius);
-  Eigen::Matrix3d information;
-  double squares = 0;
-  for (int step = 0; step < 8; ++step) {
-    information = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
-    information(2, 2) = 1 / (kPriorRadiusSd * kPriorRadiusSd);
-    gradient(2) = information(2, 2) * (kPriorRadius - circle(2));
-    // Columns that lean or carry things are rougher than ranges: their points say less of the radius.
-    const double variance = kPointSd * kPointSd + squares / static_cast<double>(points.size());
-    squares = 0;
-    for (const Eigen::Vector2d& p : points) {
-      const Eigen::Vector2d from = p - circle.head<2>();
-      const double distance = std::max(1e-6, from.norm()), error = distance - circle(2);
-      const Eigen::Vector3d row(from.x() / distance, from.y() / distance, 1);
-      const double weight = 1 / variance;
-      information += weight * row * row.transpose();
-      gradient += weight * error * row;
-      squares += error * error;
-    }
-    // Without the middle of the arc nothing holds the centre across: the points' own mean does.
-    const Eigen::Vector2d across(-away.y(), away.x());
-    const double holds = static_cast<double>(points.size()) / (variance + kPriorRadius * kPriorRadius);
-    information.topLeftCorner<2, 2>() += holds * across * across.transpose();
-    gradient.head<2>() += holds * across * across.dot(mean - circle.head<2>());
-    circle += information.inverse() * gradient;
-    circle(2) = std::clamp(circle(2), 0.01, options.max_diameter);
-  }
-  const Eigen::Matrix3d covariance = information.inverse();
-  const double rms = std::sqrt(squares / static_cast<double>(points.size()));
-  if (!circle.allFinite() || 2 * circle(2) > options.max_diameter || rms > kPointSd + 0.3 * circle(2) ||
-      (circle.head<2>() - mean).norm() > options.max_diameter)
-    return {};
-  CloudPole pole{.at = circle.head<2>(), .covariance = covariance.topLeftCorner<2, 2>()};
-  // Poles lean and carry things: what the circle does not explain.
-  pole.covariance += (0.02 * 0.02 + rms * rms / 4) * Eigen::Matrix2d::Identity();
-  pole.diameter = 2 * circle(2);
-  const double step = kAzimuthStep * mean.norm();
-  pole.diameter_sd = std::sqrt(4 * covariance(2, 2) + rms * rms + step * step);
-  return pole;
-}
-
 /// Returns whether a pole is one of a row of columns along the line of sight, as of a wall seen at a flat
 /// angle.
 bool stands_in_row(const Eigen::Vector2d& at, const std::vector<Eigen::Vector2d>& columns) {
@@ -231,26 +174,33 @@ std::vector<CloudPole> find_poles(const PointCloud& cloud, const CloudPoleOption
   const PointGrid grid(cloud, options.max_range + kRowReach);  // what stands behind a pole matters
   std::vector<Eigen::Vector2d> columns = candidates(grid);
   for (Eigen::Vector2d& column : columns) column = shifted_to_mean(grid, column);
+  const double step = column_step(cloud);
   std::vector<CloudPole> poles;
   for (const Eigen::Vector2d& at : columns) {
     if (at.norm() > options.max_range) continue;
     const FreePiece piece = longest_free_piece(grid, at, options.clear);
     if (!(piece.top - piece.base >= options.min_height && piece.base <= options.max_base)) continue;
-    std::vector<Eigen::Vector2d> points;
-    grid.within(at, kCore, [&](const RaisedPoint& p, double) {
+    std::vector<RaisedPoint> points;
+    grid.within(at, kShape, [&](const RaisedPoint& p, double) {
       if (p.height >= static_cast<float>(piece.base) && p.height <= static_cast<float>(piece.top))
-        points.push_back(p.at.cast<double>());
+        points.push_back(p);
     });
     if (static_cast<int>(points.size()) < options.min_points) continue;
-    auto pole = fit_circle(points, options);
-    if (!pole || stands_in_row(at, columns)) continue;
-    pole->base = piece.base, pole->top = piece.top, pole->points = static_cast<int>(points.size());
+    const std::optional<UprightShape> shape = fit_upright(points, step, options.max_diameter);
+    if (!shape || stands_in_row(at, columns)) continue;
+    const CloudPole pole{.at = shape->axis,
+                         .covariance = shape->covariance,
+                         .diameter = shape->diameter,
+                         .diameter_sd = shape->diameter_sd,
+                         .base = piece.base,
+                         .top = piece.top,
+                         .points = static_cast<int>(points.size())};
     const auto same = std::ranges::find_if(
-        poles, [&](const CloudPole& other) { return (other.at - pole->at).norm() < kSame; });
+        poles, [&](const CloudPole& other) { return (other.at - pole.at).norm() < kSame; });
     if (same == poles.end())
-      poles.push_back(*pole);
-    else if (pole->points > same->points)
-      *same = *pole;
+      poles.push_back(pole);
+    else if (pole.points > same->points)
+      *same = pole;
   }
   return poles;
 }

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "localization/detectors/upright_shape.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace waymark::localization {
+namespace {
+
+constexpr double kShapeLayer = 0.25;  // m
+constexpr double kRangeSd = 0.03;     // m of a range, and of what the beam's width adds
+constexpr double kUsualRadius = 0.1, kUsualRadiusSd = 0.08;  // m, of poles in towns
+constexpr double kLean = 0.02;                               // m: poles lean and carry things
+constexpr double kRough = 0.04;                              // m about a circle: poles carry things
+constexpr double kMinStem = 0.15;                            // m, radius: noise falsifies smaller arcs
+constexpr double kStemSd = 0.05;                             // m of that radius
+constexpr double kMinPlate = 0.15;                           // m, half of its width
+constexpr double kSurelyFlat = 4.6;                          // logarithm of the ratio of likelihoods, 100
+constexpr double kWider = 1.5;     // of the narrow layers: what is wider shows something else
+constexpr float kRow = 0.001F;     // rad between points of a row, in elevation
+constexpr int kSampledRows = 8;    // one of so many is looked at
+constexpr float kMaxStep = 0.03F;  // rad: what is farther apart are no neighbours
+
+struct Circle {
+  Eigen::Vector2d centre;
+  double radius = 0, radius_variance = 0;
+};
+
+using Points = std::vector<Eigen::Vector2d>;
+
+double median(std::vector<double>& values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+Eigen::Vector2d mean(const Points& points) {
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) sum += p;
+  return sum / static_cast<double>(points.size());
+}
+
+// Returns the mean squared distance from a circle.
+double mean_square(const Points& points, const Circle& circle) {
+  double squares = 0;
+  for (const Eigen::Vector2d& p : points) {
+    const double error = (p - circle.centre).norm() - circle.radius;
+    squares += error * error;
+  }
+  return squares / static_cast<double>(points.size());
+}
+
+// Returns the mean squared distance from the straight line that fits best.
+double mean_square_of_line(const Points& points) {
+  const Eigen::Vector2d middle = mean(points);
+  Eigen::Matrix2d scatter = Eigen::Matrix2d::Zero();
+  for (const Eigen::Vector2d& p : points) scatter += (p - middle) * (p - middle).transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(scatter, Eigen::EigenvaluesOnly);
+  return axes.eigenvalues()[0] / static_cast<double>(points.size());
+}
+
+// Fits a circle to the arc alone (Gauss-Newton).
+Circle fit_arc(const Points& points) {
+  const Eigen::Vector2d middle = mean(points);
+  Circle circle{.centre = middle + kUsualRadius * middle.normalized(), .radius = kUsualRadius};
+  Eigen::Matrix3d information;
+  for (int step = 0; step < 8; ++step) {
+    Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
+    information = 1e-3 * Eigen::Matrix3d::Identity();
+    const double variance = kRangeSd * kRangeSd + mean_square(points, circle);
+    for (const Eigen::Vector2d& p : points) {
+      const Eigen::Vector2d from = p - circle.centre;
+      const double distance = std::max(1e-6, from.norm());
+      const Eigen::Vector3d row(from.x() / distance, from.y() / distance, 1);
+      information += row * row.transpose() / variance;
+      gradient += row * (distance - circle.radius) / variance;
+    }
+    const Eigen::Vector3d correction = information.inverse() * gradient;
+    circle.centre += correction.head<2>();
+    circle.radius = std::clamp(circle.radius + correction[2], 0.01, 1.0);
+  }
+  circle.radius_variance = information.inverse()(2, 2);
+  return circle;
+}
+
+// Returns whether an arc is that of a stem: as precise as the ranges, and no plate.
+bool is_stem(const Circle& arc, const Points& points, double max_diameter) {
+  const double squares = mean_square(points, arc);
+  return arc.centre.allFinite() && arc.radius > kMinStem && 2 * arc.radius <= max_diameter &&
+         arc.radius_variance < kStemSd * kStemSd && squares < 4 * kRangeSd * kRangeSd &&
+         squares < mean_square_of_line(points);
+}
+
+bool is_plate(const Circle& circle, const Points& points) {
+  const double line = mean_square_of_line(points), noise = kRangeSd * kRangeSd;
+  return circle.radius > kMinPlate &&
+         line<noise&& static_cast<double>(points.size()) * (mean_square(points, circle) - line)> 2 * noise *
+             kSurelyFlat;
+}
+
+// What a pole hides: the points of its narrow layers, and the angle that they fill.
+struct Silhouette {
+  Points points;
+  double width = 0;  // rad
+};
+
+// A sign on a post is wider than the post: the narrowest quarter of the layers says what belongs to it.
+Silhouette narrow_layers(std::span<const RaisedPoint> points, const Eigen::Vector2d& along, double step) {
+  struct Layer {
+    double count = 0, sum = 0, squares = 0, width = 0;
+  };
+  const Eigen::Vector2d across(-along.y(), along.x());
+  const float lowest = std::ranges::min(points, {}, &RaisedPoint::height).height;
+  std::vector<Layer> layers;
+  const auto layer_of = [&](const RaisedPoint& p) {
+    return static_cast<std::size_t>(static_cast<double>(p.height - lowest) / kShapeLayer);
+  };
+  for (const RaisedPoint& p : points) {
+    const std::size_t l = layer_of(p);
+    if (l >= layers.size()) layers.resize(l + 1);
+    const double angle = across.dot(p.at.cast<double>()) / along.dot(p.at.cast<double>());
+    layers[l].count += 1, layers[l].sum += angle, layers[l].squares += angle * angle;
+  }
+  std::vector<double> widths;
+  for (Layer& l : layers) {
+    if (l.count == 0) continue;
+    // n columns fill n steps; the variance of their angles is that of n values.
+    const double mean = l.sum / l.count;
+    l.width = std::sqrt(12 * std::max(0.0, l.squares / l.count - mean * mean) + step * step);
+    widths.push_back(l.width);
+  }
+  const auto quarter = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 4);
+  std::ranges::nth_element(widths, quarter);
+  const double widest = std::max(kWider * *quarter, *quarter + kWider * step);
+  std::erase_if(widths, [&](double width) { return width > widest; });
+  Silhouette found{
+      .points = {},
+      .width = std::accumulate(widths.begin(), widths.end(), 0.0) / static_cast<double>(widths.size())};
+  for (const RaisedPoint& p : points)
+    if (layers[layer_of(p)].width <= widest) found.points.push_back(p.at.cast<double>());
+  return found;
+}
+
+// Returns the circle between the tangents at both sides of a silhouette.
+Circle circle_within(const Silhouette& pole, double step) {
+  const Eigen::Vector2d middle = mean(pole.points), along = middle.normalized();
+  const double depth = middle.norm(), quantum = depth * step;
+  // radius = (depth + pi / 4 * radius) * sin(width / 2)
+  const double sine = std::sin(std::min(pole.width / 2, 1.0)), seen = depth * sine / (1 - 0.785 * sine);
+  const double seen_variance = quantum * quantum / 24 + 1e-8,
+               usual_variance = kUsualRadiusSd * kUsualRadiusSd;
+  Circle circle;
+  circle.radius_variance = seen_variance * usual_variance / (usual_variance + seen_variance);
+  circle.radius = circle.radius_variance * (seen / seen_variance + kUsualRadius / usual_variance);
+  std::vector<double> depths;
+  for (const Eigen::Vector2d& p : pole.points) {
+    const double off = along.x() * p.y() - along.y() * p.x();
+    depths.push_back(along.dot(p) + std::sqrt(std::max(0.0, circle.radius * circle.radius - off * off)));
+  }
+  circle.centre = median(depths) * along;
+  return circle;
+}
+
+}  // namespace
+
+double column_step(const PointCloud& cloud) {
+  std::vector<std::pair<int, float>> sampled;  // row and azimuth
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (!p.allFinite()) continue;
+    const int row = static_cast<int>(std::floor(std::atan2(p.z(), p.head<2>().norm()) / kRow));
+    if (row % kSampledRows == 0) sampled.emplace_back(row, std::atan2(p.y(), p.x()));
+  }
+  std::ranges::sort(sampled);
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < sampled.size(); ++i)
+    if (const float step = sampled[i].second - sampled[i - 1].second;
+        sampled[i].first == sampled[i - 1].first && step < kMaxStep)
+      steps.push_back(static_cast<double>(step));
+  return steps.empty() ? 0 : median(steps);
+}
+
+std::optional<UprightShape> fit_upright(std::span<const RaisedPoint> points, double step,
+                                        double max_diameter) {
+  if (points.empty()) return {};
+  Silhouette pole;
+  for (const RaisedPoint& p : points) pole.points.push_back(p.at.cast<double>());
+  Circle circle = fit_arc(pole.points);
+  if (!is_stem(circle, pole.points, max_diameter)) {
+    pole = narrow_layers(points, mean(pole.points).normalized(), step);
+    circle = circle_within(pole, step);
+    if (is_plate(circle, pole.points)) return {};
+  }
+  const double squares = mean_square(pole.points, circle),
+               most = kRough + 0.3 * std::max(circle.radius, kUsualRadius);
+  if (!(squares < most * most) || 2 * circle.radius > max_diameter) return {};
+  const Eigen::Vector2d sight = circle.centre.normalized(), side(-sight.y(), sight.x());
+  const double quantum = circle.centre.norm() * step, own = kLean * kLean + squares / 4;
+  const double range_variance = kRangeSd * kRangeSd / static_cast<double>(pole.points.size());
+  return UprightShape{
+      .axis = circle.centre,
+      .covariance = (own + range_variance + circle.radius_variance) * sight * sight.transpose() +
+                    (own + quantum * quantum / 24) * side * side.transpose(),
+      .diameter = 2 * circle.radius,
+      .diameter_sd = std::sqrt(4 * circle.radius_variance + squares + quantum * quantum)};
+}
+
+}  // namespace waymark::localization
