@@ -135,7 +135,11 @@ PointDetector make_point_detector(const TypeRegistry& types, std::span<const Typ
   std::vector<PointDetector> detectors;
   for (const DetectorSpec& detector : point_detectors())
     if (makes_type_of(detector, of_map)) detectors.push_back(detector.make_points(types));
-  return detect_held(std::move(detectors), of_map);
+  return [detect = detect_held(std::move(detectors), of_map)](const PointCloud& cloud) {
+    SightingSet seen = detect(cloud);
+    seen.sensor = 1;
+    return seen;
+  };
 }
 
 LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options,

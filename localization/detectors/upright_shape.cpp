@@ -21,8 +21,9 @@ constexpr double kMinStem = 0.15;                            // m, radius: noise
 constexpr double kStemSd = 0.05;                             // m of that radius
 constexpr double kMinPlate = 0.15;                           // m, half of its width
 constexpr double kSurelyFlat = 4.6;                          // logarithm of the ratio of likelihoods, 100
-constexpr double kWider = 1.5;     // of the narrow layers: what is wider shows something else
-constexpr float kRow = 0.001F;     // rad between points of a row, in elevation
+constexpr double kWider = 1.5;  // of the narrow layers: what is wider shows something else
+constexpr float kRow = 0.001F;  // rad between points of a row, in elevation
+constexpr float kMaxSlope = 2;
 constexpr int kSampledRows = 8;    // one of so many is looked at
 constexpr float kMaxStep = 0.03F;  // rad: what is farther apart are no neighbours
 
@@ -171,8 +172,9 @@ Circle circle_within(const Silhouette& pole, double step) {
 double column_step(const PointCloud& cloud) {
   std::vector<std::pair<int, float>> sampled;  // row and azimuth
   for (const Eigen::Vector3f& p : cloud.points) {
-    if (!p.allFinite()) continue;
-    const int row = static_cast<int>(std::floor(std::atan2(p.z(), p.head<2>().norm()) / kRow));
+    const float slope = p.z() / p.head<2>().norm();
+    if (!(std::abs(slope) < kMaxSlope)) continue;
+    const int row = static_cast<int>(std::floor(slope / kRow));
     if (row % kSampledRows == 0) sampled.emplace_back(row, std::atan2(p.y(), p.x()));
   }
   std::ranges::sort(sampled);
@@ -196,8 +198,8 @@ std::optional<UprightShape> fit_upright(std::span<const RaisedPoint> points, dou
     if (is_plate(circle, pole.points)) return {};
   }
   const double squares = mean_square(pole.points, circle),
-               most = kRough + 0.3 * std::max(circle.radius, kUsualRadius);
-  if (!(squares < most * most) || 2 * circle.radius > max_diameter) return {};
+               max_rms = kRough + 0.3 * std::max(circle.radius, kUsualRadius);
+  if (!(squares < max_rms * max_rms) || 2 * circle.radius > max_diameter) return {};
   const Eigen::Vector2d sight = circle.centre.normalized(), side(-sight.y(), sight.x());
   const double quantum = circle.centre.norm() * step, own = kLean * kLean + squares / 4;
   const double range_variance = kRangeSd * kRangeSd / static_cast<double>(pole.points.size());
