@@ -61,7 +61,7 @@ Chain chain_of(const GeometryPart& part, const std::vector<SharedVertex>* shared
   for (std::size_t i = 0; i < part.vertices.size() - (ring ? 1 : 0); ++i) {
     if (!chain.vertices.empty() && same_point(chain.vertices.back(), part.vertices[i])) {
       ++repeated;
-      if (shared && (*shared)[i].joined) chain.shared.back() = (*shared)[i];
+      if (shared && ((*shared)[i].joined || (*shared)[i].meeting)) chain.shared.back() = (*shared)[i];
       continue;
     }
     chain.vertices.push_back(part.vertices[i]);
@@ -99,10 +99,38 @@ std::string label(const Chain& chain, std::size_t vertex, int side, bool several
   return name;
 }
 
+/// Adds the corners between three walls or more that meet at a vertex.
+void add_wedges(const Chain& chain, std::size_t i, const ShapeOptions& options, DerivedShapes& into) {
+  int number = 0;
+  for (const auto& [right, left] : chain.shared[i].wedges) {
+    const Eigen::Vector2d a = right - chain.at(i), b = left - chain.at(i);
+    if (a.norm() < options.min_length || b.norm() < options.min_length) {
+      ++into.omitted["wall of a corner shorter than min_length"];
+      continue;
+    }
+    double opening = std::atan2(cross(a, b), a.dot(b));
+    if (opening <= 0) opening += 2 * kHalfTurn;
+    if (std::abs(opening - kHalfTurn) < options.min_turn) continue;  // a wall that goes on
+    if (std::abs(opening - kHalfTurn) > kMaxTurn) {
+      ++into.omitted["tip of a spike"];
+      continue;
+    }
+    const double middle = std::atan2(a.y(), a.x()) + opening / 2;
+    into.shapes.push_back({.at = chain.vertices[i],
+                           .vertex = std::to_string(chain.number[i]) + "w" + std::to_string(++number),
+                           .values = {{"direction", azimuth({std::cos(middle), std::sin(middle)})},
+                                      {"opening_angle", opening}}});
+  }
+}
+
 void add_corners(const Chain& chain, const ShapeOptions& options, DerivedShapes& into) {
   const std::size_t n = chain.vertices.size();
   const auto sides = seen_sides(chain, options.open);
   for (std::size_t i = 0; i < n; ++i) {
+    if (chain.shared[i].meeting) {
+      add_wedges(chain, i, options, into);
+      continue;
+    }
     const auto& next = chain.shared[i].next;
     const bool first = !chain.closed && i == 0, last = !chain.closed && i + 1 == n;
     if ((first || last) && !next) continue;

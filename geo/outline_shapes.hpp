@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -14,7 +15,7 @@ enum class ShapeOf {
   point,     ///< each point
   centroid,  ///< one for the element: of its area, else of its lines, else of its points
   outline,   ///< the centroid of an area; other geometries are refused
-  corners,   ///< vertices at which an outline or a line turns, and joints of two lines that turn
+  corners,   ///< vertices at which an outline or a line turns, and joints of lines
   ends,      ///< free ends of each line, once for each side
   walls,     ///< straight pieces of outlines and lines
 };
@@ -62,7 +63,10 @@ struct SharedVertex {
   bool wall = false;    ///< the wall to the next vertex is one of another outline, too
   bool joined = false;  ///< end of a line that is a vertex of another line
   std::optional<Eigen::Vector2d> next =
-      {};  ///< vertex at which the only other line goes on; one of both has it
+      {};                ///< vertex at which the only other line goes on; one of both has it
+  bool meeting = false;  ///< three lines or more come here, or go on: corners are those of `wedges`
+  /// Between walls that come here: next vertices of the walls right and left of it, seen from here.
+  std::vector<std::array<Eigen::Vector2d, 2>> wedges = {};
 };
 DerivedShapes derive_shapes(const std::vector<GeometryPart>& parts, const ShapeOptions& options,
                             const std::vector<std::vector<SharedVertex>>& shared = {});

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/absolute_fix.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <cmath>
 #include <numbers>
 
 #include "localization/chi_square.hpp"
@@ -11,10 +13,10 @@ namespace {
 
 template <int Rows>
 FixUpdate linear_update(const PoseEstimate& e, const Eigen::Matrix<double, Rows, 3>& h,
-                        const Eigen::Matrix<double, Rows, 1>& v, double variance) {
+                        const Eigen::Matrix<double, Rows, 1>& v, const Eigen::Matrix<double, Rows, Rows>& r) {
   using Square = Eigen::Matrix<double, Rows, Rows>;
   const Eigen::Matrix3d& p = e.covariance;
-  const Square r = Square::Identity() * variance, s = h * p * h.transpose() + r;
+  const Square s = h * p * h.transpose() + r;
   const Square inverse = s.inverse();
   const Eigen::Matrix<double, 3, Rows> gain = p * h.transpose() * inverse;
   const Eigen::Matrix3d a = Eigen::Matrix3d::Identity() - gain * h;
@@ -27,15 +29,20 @@ FixUpdate linear_update(const PoseEstimate& e, const Eigen::Matrix<double, Rows,
 
 }  // namespace
 
+GnssFix fix_of_covariance(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance) {
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(covariance).eigenvalues()[1];
+  return {at, std::sqrt(largest), covariance};
+}
+
 FixUpdate update_pose(const PoseEstimate& estimate, const GnssFix& fix) {
   Eigen::Matrix<double, 2, 3> h = Eigen::Matrix<double, 2, 3>::Zero();
   h(0, 0) = h(1, 1) = 1;
-  return linear_update<2>(estimate, h, fix.at - estimate.pose.at(), fix.sd * fix.sd);
+  return linear_update<2>(estimate, h, fix.at - estimate.pose.at(), fix.noise());
 }
 
 FixUpdate update_pose(const PoseEstimate& estimate, const HeadingFix& fix) {
   const Eigen::Matrix<double, 1, 1> v(wrap_angle(fix.yaw - estimate.pose.yaw));
-  return linear_update<1>(estimate, {0, 0, 1}, v, fix.sd * fix.sd);
+  return linear_update<1>(estimate, {0, 0, 1}, v, Eigen::Matrix<double, 1, 1>(fix.sd * fix.sd));
 }
 
 bool FixGate::pass(double squares, int rows) {

@@ -7,8 +7,16 @@ namespace waymark::localization {
 /// A position measured by an absolute sensor such as a GNSS receiver.
 struct GnssFix {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
-  double sd = 1;  ///< m, of each coordinate
+  double sd = 1;  ///< m, of each coordinate; with a covariance that of the least certain direction
+  std::optional<Eigen::Matrix2d> covariance = {};  ///< m2, of x and y; unknown: `sd` in all directions
+
+  Eigen::Matrix2d noise() const {
+    return covariance ? *covariance : Eigen::Matrix2d(sd * sd * Eigen::Matrix2d::Identity());
+  }
 };
+
+/// Returns a fix of a covariance, which must be positive definite.
+GnssFix fix_of_covariance(const Eigen::Vector2d& at, const Eigen::Matrix2d& covariance);
 
 /// A heading measured by an absolute sensor: compass, sun or stars.
 struct HeadingFix {

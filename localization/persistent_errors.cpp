@@ -175,11 +175,18 @@ PoseEstimate PersistentErrors::robot(const PoseEstimate& pose) const {
   return {robot.pose, robot.by_both * pose.covariance * robot.by_both.transpose() + robot.rest};
 }
 
+std::optional<PoseEstimate> PersistentErrors::mount() const {
+  if (!(frames_.mount_sd > 0 || frames_.mount_yaw_sd > 0)) return {};
+  return PoseEstimate{pose_of(mean_.segment<3>(kMount)), covariance_.block<3, 3>(kMount, kMount)};
+}
+
 GnssFix PersistentErrors::relative_to_map(const GnssFix& fix, const PoseEstimate& pose) const {
   if (!frames_.any()) return fix;
   const Robot robot = robot_by(pose);
-  return {fix.at + pose.pose.at() - robot.pose.at(),
-          std::sqrt(fix.sd * fix.sd + robot.rest.topLeftCorner<2, 2>().trace() / 2)};
+  const double separating = robot.rest.topLeftCorner<2, 2>().trace() / 2;
+  GnssFix relative{fix.at + pose.pose.at() - robot.pose.at(), std::sqrt(fix.sd * fix.sd + separating)};
+  if (fix.covariance) relative.covariance = *fix.covariance + separating * Eigen::Matrix2d::Identity();
+  return relative;
 }
 
 HeadingFix PersistentErrors::relative_to_map(const HeadingFix& fix, const PoseEstimate& pose) const {
@@ -192,7 +199,8 @@ HeadingFix PersistentErrors::relative_to_map(const HeadingFix& fix, const PoseEs
 // Joseph form for the gain of the localizer by relative_to_map() and the Kalman gain of the errors.
 template <int Rows>
 void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows>& difference,
-                                 double variance, const PoseEstimate& before, const PoseEstimate& after) {
+                                 const Eigen::Matrix<double, Rows, Rows>& noise, const PoseEstimate& before,
+                                 const PoseEstimate& after) {
   constexpr int kAll = 3 + kCount;
   const std::optional<Update> update = as_update(before, after);
   if (!update) return restart();
@@ -202,8 +210,7 @@ void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows
   Eigen::Matrix<double, 3, kAll> by_all;
   by_all << robot.by_pose, robot.by_errors;
   const Eigen::Matrix<double, Rows, kAll> h = by_all.middleRows<Rows>(first_row);
-  const Eigen::Matrix<double, Rows, Rows> noise = Eigen::Matrix<double, Rows, Rows>::Identity() * variance,
-                                          s = h * all * h.transpose() + noise;
+  const Eigen::Matrix<double, Rows, Rows> s = h * all * h.transpose() + noise;
   Eigen::Matrix<double, kAll, Rows> gain = all * h.transpose() * s.inverse();
   const Eigen::Matrix<double, 3, Rows> robot_gain = by_all * gain;
   // Not of the covariances before and after: those of particles have noise larger than the gain of a poor
@@ -233,13 +240,13 @@ void PersistentErrors::learn_fix(int first_row, const Eigen::Vector<double, Rows
 
 void PersistentErrors::learn(const GnssFix& fix, const PoseEstimate& before, const PoseEstimate& after) {
   if (!frames_.any()) return learn(before, after);
-  learn_fix<2>(0, fix.at - robot(before).pose.at(), fix.sd * fix.sd, before, after);
+  learn_fix<2>(0, fix.at - robot(before).pose.at(), fix.noise(), before, after);
 }
 
 void PersistentErrors::learn(const HeadingFix& fix, const PoseEstimate& before, const PoseEstimate& after) {
   if (!frames_.any()) return learn(before, after);
   const Eigen::Vector<double, 1> difference(wrap_angle(fix.yaw - robot(before).pose.yaw));
-  learn_fix<1>(2, difference, fix.sd * fix.sd, before, after);
+  learn_fix<1>(2, difference, Eigen::Matrix<double, 1, 1>(fix.sd * fix.sd), before, after);
 }
 
 void PersistentErrors::restart() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
+#include <optional>
 #include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
 #include "localization/frame_errors.hpp"
@@ -38,6 +39,9 @@ class PersistentErrors {
 
   /// Returns the robot's pose in the reference frame, of a localizer at `pose`.
   PoseEstimate robot(const PoseEstimate& pose) const;
+  /// Returns the place of the sensors on the robot, forward, left and yaw beside that of the log;
+  /// `std::nullopt` if it is known.
+  std::optional<PoseEstimate> mount() const;
   /// Returns a fix of the robot as one of the localizer's pose, with the variance of what separates them.
   GnssFix relative_to_map(const GnssFix& fix, const PoseEstimate& pose) const;
   HeadingFix relative_to_map(const HeadingFix& fix, const PoseEstimate& pose) const;
@@ -59,8 +63,9 @@ class PersistentErrors {
   struct Robot;
   Robot robot_by(const PoseEstimate& pose) const;
   template <int Rows>
-  void learn_fix(int first_row, const Eigen::Vector<double, Rows>& difference, double variance,
-                 const PoseEstimate& before, const PoseEstimate& after);
+  void learn_fix(int first_row, const Eigen::Vector<double, Rows>& difference,
+                 const Eigen::Matrix<double, Rows, Rows>& noise, const PoseEstimate& before,
+                 const PoseEstimate& after);
   void limit();
 
   OdometryDrift drift_;

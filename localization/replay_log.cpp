@@ -37,6 +37,7 @@ bool LogReplay::take(const LogEvent& event) {
   if (!seen && !options_.every_event) return false;
   row.t = event.t;
   row.at = errors_.robot(localizer_.estimate());
+  track_.mount = errors_.mount();
   row.lost = localizer_.status() != LocalizationStatus::tracking;
   update_terrain_pose(row.at.pose);
   row.z = terrain_pose_.z, row.roll = terrain_pose_.roll, row.pitch = terrain_pose_.pitch;

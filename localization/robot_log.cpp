@@ -147,6 +147,7 @@ void clean_log(RobotLog& log, double max_gap) {
 
 void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
   const auto placed = [&](double x, double y) -> Eigen::Vector2d { return plan_position(frame, x, y); };
+  const bool own_axes = log.fix_crs.empty();  // else they are east and north
   if (!log.fix_crs.empty()) {
     place_fixes(log, frame.crs(), placed);
     log.fix_crs.clear();
@@ -165,8 +166,12 @@ void convert_to_map_frame(RobotLog& log, const LocalFrame& frame) {
                                 : log.truth.empty() ? Eigen::Vector2d(0, 0)
                                                     : log.truth.front().pose.at();
   const double rotation = grid_rotation(frame, where);
-  for (LogEvent& e : log.events)
+  const Eigen::Matrix2d frame_from_crs = Eigen::Rotation2Dd(-rotation).toRotationMatrix();
+  for (LogEvent& e : log.events) {
     if (auto* heading = std::get_if<HeadingFix>(&e.what)) heading->yaw = wrap_angle(heading->yaw - rotation);
+    if (auto* fix = std::get_if<GnssFix>(&e.what); fix && fix->covariance && own_axes)
+      fix->covariance = frame_from_crs * *fix->covariance * frame_from_crs.transpose();
+  }
   log.in_crs = false;
 }
 

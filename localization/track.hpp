@@ -47,6 +47,8 @@ struct Track {
   double seconds = 0;                              ///< of all updates, if timed
   std::optional<PoseSearchRecord> search = {};     ///< of methods that searched the whole map
   std::optional<GraphFit> graph = {};              ///< of methods that optimise a graph
+  /// Sensors' place on the robot, forward, left and yaw beside that of the log, if it is estimated.
+  std::optional<PoseEstimate> mount = {};
 };
 
 }  // namespace waymark::localization

@@ -162,6 +162,10 @@ class Localize final : public Command {
         {"end_x_m", ResultKind::number, "Last pose, x in the map frame"},
         {"end_y_m", ResultKind::number, "Last pose, y in the map frame"},
         {"end_yaw_rad", ResultKind::number, "Last pose, yaw from the map's x towards y"},
+        {"sensor_place", ResultKind::object,
+         "Estimated place of the sensors on the robot beside that of the log: forward_m, left_m, yaw_rad, "
+         "and "
+         "their deviations forward_sd_m, left_sd_m, yaw_sd_rad; null: not estimated (--set mount_sd)"},
         {"time_per_update_us", ResultKind::number,
          "Mean duration of an update, microseconds; differs from run "
          "to run; null: no updates"},
@@ -197,6 +201,15 @@ class Localize final : public Command {
                                    {"end_x_m", end.at.pose.x},
                                    {"end_y_m", end.at.pose.y},
                                    {"end_yaw_rad", end.at.pose.yaw}});
+    }
+    if (track.mount) {
+      const Eigen::Vector3d sd = track.mount->covariance.diagonal().cwiseSqrt();
+      values.emplace_back("sensor_place", ResultJson{result_object({{"forward_m", track.mount->pose.x},
+                                                                    {"left_m", track.mount->pose.y},
+                                                                    {"yaw_rad", track.mount->pose.yaw},
+                                                                    {"forward_sd_m", sd[0]},
+                                                                    {"left_sd_m", sd[1]},
+                                                                    {"yaw_sd_rad", sd[2]}})});
     }
     if (track.updates)
       values.emplace_back("time_per_update_us", 1e6 * track.seconds / static_cast<double>(track.updates));
@@ -254,6 +267,14 @@ class Localize final : public Command {
     if (track.updates)
       log_summary(
           fmt::format("{:.1f} us per update\n", 1e6 * track.seconds / static_cast<double>(track.updates)));
+    if (track.mount) {
+      const Eigen::Vector3d sd = track.mount->covariance.diagonal().cwiseSqrt();
+      log_summary(
+          fmt::format("sensors, beside their place in the log: {:.3f} m forward, {:.3f} m left, turned by "
+                      "{:.4f}; standard "
+                      "deviations {:.2g}, {:.2g} m, {:.2g}\n",
+                      track.mount->pose.x, track.mount->pose.y, track.mount->pose.yaw, sd[0], sd[1], sd[2]));
+    }
     if (track.search && track.search->t) {
       const localization::PoseEstimate& at = track.search->at;
       log_summary(fmt::format(

@@ -216,8 +216,8 @@ class BagReader {
     const double arm = place_of(topic.frame, body).translation().head<2>().norm();
     std::size_t unstated = 0;
     for (const BagFix& fix : topic.fixes) {
-      unstated += !(fix.sd > 0);
-      log_.events.push_back({fix.at.t, fix_of_antenna(fix.longitude, fix.latitude, fix.sd, arm)});
+      unstated += !fix.covariance;
+      log_.events.push_back({fix.at.t, fix_of_antenna(fix.longitude, fix.latitude, fix.covariance, arm)});
     }
     log_.fix_crs = "EPSG:4326";
     std::string remark =

@@ -99,7 +99,7 @@ BagFix read_fix(const BagMessage& message) {
     throw std::runtime_error(
         fmt::format("a position is no latitude and longitude: {}, {}", fix.latitude, fix.longitude));
   fix.is_fix = true;
-  fix.sd = horizontal_sd(covariance, type);
+  fix.covariance = horizontal_covariance(covariance, type);
   return fix;
 }
 

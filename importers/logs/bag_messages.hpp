@@ -53,10 +53,9 @@ BagImu read_imu(const BagMessage& message);
 /// sensor_msgs/msg/NavSatFix.
 struct BagFix {
   BagStamp at;
-  bool is_fix = false;                 ///< false: the receiver had none; the rest is not set
-  double longitude = 0, latitude = 0;  ///< degrees, WGS 84
-  /// Standard deviation, m: of the least certain horizontal direction; 0: not stated.
-  double sd = 0;
+  bool is_fix = false;                             ///< false: the receiver had none; the rest is not set
+  double longitude = 0, latitude = 0;              ///< degrees, WGS 84
+  std::optional<Eigen::Matrix2d> covariance = {};  ///< m2, of east and north; unknown: not stated
 };
 BagFix read_fix(const BagMessage& message);
 

@@ -31,6 +31,9 @@ struct CsvField {
   bool word = false;
 };
 
+// Fields of a position in the robot's frame, which becomes a range and a bearing.
+constexpr const char *kSeenForward = "seen_x", *kSeenLeft = "seen_y", *kSeenSd = "seen_sd";
+
 constexpr std::array kCsvFields{
     CsvField{"v", "odometry", "v", Need::needed},
     CsvField{"omega", "odometry", "omega", Need::needed},
@@ -43,12 +46,18 @@ constexpr std::array kCsvFields{
     CsvField{"gnss_x", "gnss", "x", Need::needed},
     CsvField{"gnss_y", "gnss", "y", Need::needed},
     CsvField{"gnss_sd", "gnss", "sd"},
+    CsvField{"gnss_var_x", "gnss", "var_x"},
+    CsvField{"gnss_var_y", "gnss", "var_y"},
+    CsvField{"gnss_cov_xy", "gnss", "cov_xy"},
     CsvField{"compass", "compass", "yaw", Need::needed},
     CsvField{"compass_sd", "compass", "sd"},
     CsvField{"bearing", "sightings", "bearing", Need::one_of_several},
     CsvField{"bearing_sd", "sightings", "bearing_sd"},
     CsvField{"range", "sightings", "range", Need::one_of_several},
     CsvField{"range_sd", "sightings", "range_sd"},
+    CsvField{"seen_x", "sightings", kSeenForward, Need::one_of_several},
+    CsvField{"seen_y", "sightings", kSeenLeft},
+    CsvField{"seen_sd", "sightings", kSeenSd},
     CsvField{"elevation", "sightings", "elevation"},
     CsvField{"elevation_sd", "sightings", "elevation_sd"},
     CsvField{"confidence", "sightings", "confidence"},
@@ -191,10 +200,32 @@ class CsvLog {
       return;
     }
     const auto line = static_cast<std::size_t>(row.number);
-    if (kind == "sightings") return add_sighting(line, t, std::move(values));
+    if (kind == "sightings") {
+      if (!use_position(values)) {
+        ++incomplete_[kind];
+        return;
+      }
+      return add_sighting(line, t, std::move(values));
+    }
     ordered_json record{{"kind", kind}, {"t", t}};
     record.update(values);
     records_.push_back({line, text_of(record)});
+  }
+
+  /// Replaces the position of a sighting by its range and bearing. Returns false if half of it is missing.
+  static bool use_position(ordered_json& item) {
+    const bool forward = item.contains(kSeenForward), left = item.contains(kSeenLeft);
+    if (forward != left || (!forward && item.contains(kSeenSd))) return false;
+    if (!forward) return true;
+    const double x = item[kSeenForward], y = item[kSeenLeft], range = std::hypot(x, y);
+    item["range"] = range, item["bearing"] = std::atan2(y, x);
+    if (item.contains(kSeenSd)) {
+      const double sd = item[kSeenSd];
+      item["range_sd"] = sd;
+      if (range > 0) item["bearing_sd"] = sd / range;
+    }
+    for (const char* field : {kSeenForward, kSeenLeft, kSeenSd}) item.erase(field);
+    return true;
   }
 
   // Sightings of one time are one set.

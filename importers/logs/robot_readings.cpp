@@ -44,22 +44,27 @@ void mount(localization::LaserScan& scan, const Eigen::Isometry3d& robot_from_se
   std::ranges::reverse(scan.intensities);
 }
 
-double horizontal_sd(const Covariance3& covariance, int type) {
+std::optional<Eigen::Matrix2d> horizontal_covariance(const Covariance3& covariance, int type) {
   constexpr int kUnknown = 0, kKnown = 3;  // of 1, approximated, and 2, diagonal, only the diagonal counts
   if (type < kUnknown || type > kKnown)
     throw std::runtime_error("there is no type of covariance " + std::to_string(type));
-  if (type == kUnknown) return 0;
+  if (type == kUnknown) return {};
   const double aside = type == kKnown ? covariance[1] : 0;
   Eigen::Matrix2d horizontal;
   horizontal << covariance[0], aside, aside, covariance[4];
   if (!horizontal.allFinite()) throw std::runtime_error("the covariance of a position is not finite");
-  const double variance = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(horizontal).eigenvalues()[1];
-  return variance > 0 ? std::sqrt(variance) : 0;
+  const Eigen::Vector2d variances = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(horizontal).eigenvalues();
+  if (!(variances[1] > 0)) return {};
+  if (variances[0] > 0) return horizontal;
+  return Eigen::Matrix2d(variances[1] * Eigen::Matrix2d::Identity());
 }
 
-localization::GnssFix fix_of_antenna(double longitude, double latitude, double sd, double arm) {
+localization::GnssFix fix_of_antenna(double longitude, double latitude,
+                                     const std::optional<Eigen::Matrix2d>& covariance, double arm) {
   constexpr double kUnstatedSd = 3;  // m, as of a record `gnss` without `sd`
-  return {{longitude, latitude}, std::hypot(sd > 0 ? sd : kUnstatedSd, arm)};
+  if (!covariance) return {{longitude, latitude}, std::hypot(kUnstatedSd, arm)};
+  return localization::fix_of_covariance({longitude, latitude},
+                                         *covariance + arm * arm * Eigen::Matrix2d::Identity());
 }
 
 }  // namespace waymark::importers

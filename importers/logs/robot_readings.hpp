@@ -27,12 +27,14 @@ bool is_level(const Eigen::Isometry3d& robot_from_sensor);
 /// Gives a scan the pose of its level sensor. Of one that hangs upside down the order of beams is turned.
 void mount(localization::LaserScan& scan, const Eigen::Isometry3d& robot_from_sensor);
 
-/// Returns the standard deviation, m, of the least certain horizontal direction of a satellite fix; 0 if it
-/// is not stated. `type` is position_covariance_type of NavSatFix. Throws std::runtime_error.
-double horizontal_sd(const Covariance3& covariance, int type);
+/// Returns the covariance, m2, of east and north of a satellite fix; `std::nullopt` if it is not stated.
+/// `type` is position_covariance_type of NavSatFix. A direction without a variance gets that of the other.
+/// Throws std::runtime_error.
+std::optional<Eigen::Matrix2d> horizontal_covariance(const Covariance3& covariance, int type);
 
-/// Returns a fix in degrees. An `sd` of 0 becomes 3 m. The distance of the antenna from the robot's middle,
-/// `arm`, m, is an error, since a heading to move the fix by is not certain.
-localization::GnssFix fix_of_antenna(double longitude, double latitude, double sd, double arm);
+/// Returns a fix in degrees. Without a covariance its standard deviation is 3 m. The distance of the antenna
+/// from the robot's middle, `arm`, m, is an error, since a heading to move the fix by is not certain.
+localization::GnssFix fix_of_antenna(double longitude, double latitude,
+                                     const std::optional<Eigen::Matrix2d>& covariance, double arm);
 
 }  // namespace waymark::importers

@@ -293,10 +293,13 @@ class Reader {
   }
 
   static localization::GnssFix fix(const LogLine& line) {
-    localization::GnssFix fix;
-    fix.at = {line.number("x"), line.number("y")};
-    fix.sd = line.positive("sd", 3);
-    return fix;
+    const Eigen::Vector2d at(line.number("x"), line.number("y"));
+    if (!line.has("var_x") && !line.has("var_y") && !line.has("cov_xy")) return {at, line.positive("sd", 3)};
+    if (line.has("sd")) line.fail("states \"sd\" and variances of a position; one of both is needed");
+    const double x = line.number("var_x"), y = line.number("var_y"), both = line.number("cov_xy", 0);
+    if (!(x > 0 && y > 0 && both * both < x * y))
+      line.fail(fmt::format("\"var_x\" {}, \"var_y\" {} and \"cov_xy\" {} are no covariance", x, y, both));
+    return localization::fix_of_covariance(at, (Eigen::Matrix2d() << x, both, both, y).finished());
   }
 
   double last_truth_yaw_ = 0;

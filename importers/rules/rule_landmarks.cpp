@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "geo/local_frame.hpp"
 #include "importers/rules/bound_rule.hpp"
+#include "importers/rules/line_joints.hpp"
 #include "importers/rules/shared_outlines.hpp"
 #include "importers/tables/plausible_landmark.hpp"
 #include "importers/tables/table_positions.hpp"
@@ -21,6 +22,8 @@ namespace {
 
 constexpr double kFrameReach = 1000;  // m from the origin of a frame; north differs by less than 0.02 deg
 constexpr std::size_t kTagsShown = 8;
+// Margins in which ends that may touch a wall are looked for; they exceed 5 cm on Earth and in feet.
+constexpr double kTouchDegrees = 5e-6, kTouchUnits = 0.2;
 
 /// Returns whether a vertex has coordinates that are no numbers.
 bool is_broken(const MapElement& element) {
@@ -164,6 +167,12 @@ class RuleImport {
       if (const BoundRule* rule = first_rule(joins_lines, element))
         pass_as_taken(element, *rule, [&](const MapElement& taken) { joints_.add(taken); });
     }
+    joints_.find_touching_ends(
+        [this](const Eigen::Vector2d& near, const Eigen::Vector2d& at) {
+          frame_.move_to({near.x(), near.y(), 0});
+          return Eigen::Vector2d(frame_.metres({at.x(), at.y(), 0}).head<2>());
+        },
+        crs_.kind() == CrsKind::geographic ? kTouchDegrees : kTouchUnits);
     source_.restart();
   }
 
@@ -175,8 +184,11 @@ class RuleImport {
     if (!joins_lines(shape)) return shared;
     joints_.mark(element, shared);
     for (auto& part : shared)
-      for (SharedVertex& vertex : part)
-        if (vertex.next) vertex.next = frame_.metres({vertex.next->x(), vertex.next->y(), 0}).head<2>();
+      for (SharedVertex& vertex : part) {
+        const auto convert = [&](Eigen::Vector2d& at) { at = frame_.metres({at.x(), at.y(), 0}).head<2>(); };
+        if (vertex.next) convert(*vertex.next);
+        for (auto& wedge : vertex.wedges) std::ranges::for_each(wedge, convert);
+      }
     return shared;
   }
 

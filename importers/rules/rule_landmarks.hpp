@@ -17,8 +17,8 @@ namespace waymark::importers {
 /// - Lengths and directions are measured in a plane tangent to the body at each element. Directions are found
 ///   from true north and turned to that of the map. Local coordinates have the unit of the rules, else that
 ///   of the file, else metres.
-/// - Rules that use the outside of outlines, corners or ends read the file twice. 40 to 70 bytes per vertex
-///   are then kept in memory.
+/// - Rules that use the outside of outlines, corners or ends read the file twice. 40 bytes per vertex of
+///   outlines and 130 of lines are then kept in memory.
 /// `table_crs`, `map_crs` and `aoi` are those of TableImport. Throws Error{usage} for rules with an unknown
 /// type, feature or attribute, Error{input} if no element matches or no landmark results.
 ImportedTable import_by_rules(ElementSource& source, const std::string& path, const TypeRegistry& types,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <unordered_map>
 #include <vector>
@@ -19,25 +18,6 @@ class SharedOutlines {
 
  private:
   std::unordered_map<std::uint64_t, std::uint8_t> vertices_, walls_;  // hash -> outlines, up to 2
-};
-
-/// Ends of lines that are vertices of other lines, as walls drawn piece by piece. Vertices are the same if
-/// their coordinates are, to the last bit; equal lines count once. Memory is about 70 bytes per vertex.
-class LineJoints {
- public:
-  void add(const MapElement& element);
-  /// Marks the ends of an element that was added. `next` is in the coordinates of the file.
-  void mark(const MapElement& element, std::vector<std::vector<SharedVertex>>& into) const;
-
- private:
-  struct Joint {
-    std::array<Eigen::Vector2d, 2> neighbours;  // vertices beside the ends that meet here
-    std::uint8_t ends = 0;                      // up to 3
-    bool through = false;                       // vertex of a line, not its end
-  };
-  void add_end(const Eigen::Vector3d& end, const Eigen::Vector3d& neighbour);
-
-  std::unordered_map<std::uint64_t, Joint> joints_;
 };
 
 }  // namespace waymark::importers

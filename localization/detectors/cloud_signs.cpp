@@ -265,8 +265,11 @@ std::vector<CloudSign> free_plates(const PointCloud& cloud, const CloudSignOptio
 }  // namespace
 
 std::vector<CloudSign> find_signs(const PointCloud& cloud, const CloudSignOptions& options) {
-  const bool has_intensities = !cloud.intensities.empty() && cloud.intensities.size() == cloud.points.size();
-  return has_intensities ? reflecting_signs(cloud, options) : free_plates(cloud, options);
+  // A converter that had no intensities writes the same for all points.
+  const bool differ = std::ranges::any_of(
+      cloud.intensities, [&](float intensity) { return intensity != cloud.intensities.front(); });
+  return differ && cloud.intensities.size() == cloud.points.size() ? reflecting_signs(cloud, options)
+                                                                   : free_plates(cloud, options);
 }
 
 }  // namespace waymark::localization

@@ -137,9 +137,11 @@ void ParticleFilter::sample_around_fix(const GnssFix& gnss, double kept) {
   if (!(kept > 0)) poses_.clear(), weights_.clear();
   for (double& w : weights_) w *= kept;
   const auto count = static_cast<std::size_t>(options_.search_particles);
+  const Eigen::Matrix2d root = gnss.noise().llt().matrixL();
   for (std::size_t i = 0; i < count; ++i) {
-    const double x = gnss.at.x() + gnss.sd * random.normal(), y = gnss.at.y() + gnss.sd * random.normal();
-    poses_.push_back({x, y, random.uniform(-std::numbers::pi, std::numbers::pi)});
+    const double east = random.normal(), north = random.normal();
+    const Eigen::Vector2d at = gnss.at + root * Eigen::Vector2d(east, north);
+    poses_.push_back({at.x(), at.y(), random.uniform(-std::numbers::pi, std::numbers::pi)});
     weights_.push_back((1 - kept) / static_cast<double>(count));
   }
   summary_ = dominant_mode(poses_, weights_, kModeRadius);
@@ -167,8 +169,14 @@ bool ParticleFilter::fix(const GnssFix& gnss) {
     return true;
   }
   if (convergence_) convergence_->fix(gnss);
-  return reweight(
-      [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
+  if (!gnss.covariance)
+    return reweight(
+        [&](const Pose2& p) { return -(p.at() - gnss.at).squaredNorm() / (2 * gnss.sd * gnss.sd); });
+  const Eigen::Matrix2d information = gnss.covariance->inverse();
+  return reweight([&](const Pose2& p) {
+    const Eigen::Vector2d off = p.at() - gnss.at;
+    return -off.dot(information * off) / 2;
+  });
 }
 
 bool ParticleFilter::fix(const HeadingFix& heading) {

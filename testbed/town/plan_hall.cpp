@@ -142,7 +142,16 @@ Town plan_hall(const HallModel& model, std::uint64_t seed, std::uint64_t drive_s
     town.landmarks.push_back({.type = "pillar", .kind = {}, .at = {u, v}, .diameter = diameter, .height = 3});
   }
   if (model.symmetric) add_turned_half(town);
-  add_outline(town, {{-ix, -iy}, {ix, -iy}, {ix, iy}, {-ix, iy}}, false);
+  const std::vector<Eigen::Vector2d> core = {{-ix, -iy}, {ix, -iy}, {ix, iy}, {-ix, iy}};
+  add_outline(town, core, false);
+  for (std::size_t i = 0; i < 4; ++i) {  // walls of the core, seen from the corridor
+    const Eigen::Vector2d run = core[(i + 1) % 4] - core[i];
+    town.landmarks.push_back({.type = "wall",
+                              .kind = {},
+                              .at = core[i] + run / 2,
+                              .direction = std::atan2(run.y(), -run.x()),
+                              .length = run.norm()});
+  }
   for (std::size_t i = 0; i < 4; ++i) {  // corners of the corridor, seen from inside
     const Eigen::Vector2d open = -outer[i].cwiseSign();
     town.landmarks.push_back({.type = "wall_corner",

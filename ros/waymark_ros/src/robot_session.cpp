@@ -191,10 +191,10 @@ PoseReports RobotSession::take(const Fix& message) {
   const auto place = place_of(message.frame);
   if (!place) return {};
   try {
-    const double sd = importers::horizontal_sd(message.covariance, message.covariance_type);
+    const auto covariance = importers::horizontal_covariance(message.covariance, message.covariance_type);
     const double arm = place->translation().head<2>().norm();
     return wait("fix " + message.frame, message.stamp,
-                importers::fix_of_antenna(message.longitude, message.latitude, sd, arm));
+                importers::fix_of_antenna(message.longitude, message.latitude, covariance, arm));
   } catch (const std::runtime_error& problem) {
     return drop(problem.what()), PoseReports{};
   }

@@ -91,6 +91,36 @@ TEST_F(CsvLog, ATableGivesTheTrackOfItsRecords) {
   EXPECT_NEAR(last.at("yaw"), last_row().at("yaw"), 1e-5);
 }
 
+// Detectors of other programs write positions in the frame of the robot, each into a table with the odometry.
+TEST_F(CsvLog, SightingsMayBePositions) {
+  const std::string head = "t,v,omega,";
+  const auto rows = [](auto sighting) {
+    std::string text;
+    for (int i = 0; i < 40; ++i) {
+      const double t = 0.1 * i;
+      text += fmt::format("{},1,0,,,,\n{},,,{}\n", t, t, sighting(8 - 0.1 * i, -3.0));
+    }
+    return text;
+  };
+  const std::vector<std::string> start{"--start", "0,0,0", "--ids", "unknown"};
+  const Outcome by_position = run(head + "seen_x,seen_y,seen_sd,\n" + rows([](double x, double y) {
+                                    return fmt::format("{},{},0.2,", x, y);
+                                  }),
+                                  start, "position.csv");
+  ASSERT_EQ(by_position.code, 0) << by_position.err;
+  const Outcome by_range =
+      run(head + "range,bearing,range_sd,bearing_sd\n" + rows([](double x, double y) {
+            const double range = std::hypot(x, y);
+            return fmt::format("{:.17g},{:.17g},0.2,{:.17g}", range, std::atan2(y, x), 0.2 / range);
+          }),
+          start, "range.csv");
+  ASSERT_EQ(by_range.code, 0) << by_range.err;
+  EXPECT_EQ(text_of(folder_ / "position.csv"), text_of(folder_ / "range.csv"));
+  EXPECT_NE(text_of(folder_ / "position.csv").find("rejected"), std::string::npos);
+  const Outcome half = run("t,v,omega,seen_x,seen_y\n0,1,0,,\n0,,,4,\n1,1,0,,\n1,,,4,2\n", start);
+  EXPECT_THAT(half.err, HasSubstr("1 lines have an incomplete record of the kind 'sightings'"));
+}
+
 // The hint of a log that is not understood names --columns: each command that reads the log has it.
 TEST_F(CsvLog, IsReadByMapAndViewToo) {
   std::string csv = "stamp,speed,rate,angle,distance,east,north,heading\n";

@@ -2,6 +2,8 @@
 // Walls and columns of drawings and lanes: units, ends, and local coordinates.
 #include <gmock/gmock.h>
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -127,6 +129,63 @@ TEST_F(ImportRules, WaysOfOneWallHaveNoEndsWhereTheyMeet) {
     const bool inner = double(corner["opening_angle"]) < std::numbers::pi;
     EXPECT_NEAR(corner["direction"], (inner ? -0.25 : 0.75) * std::numbers::pi, 0.01);  // north-west
   }
+}
+
+/// Lines of a plan, turned by 0.3 rad about a point far from the origin.
+std::string plan_of(const std::vector<std::vector<Eigen::Vector2d>>& lines) {
+  json features = json::array();
+  for (const auto& line : lines) {
+    json vertices = json::array();
+    for (const Eigen::Vector2d& v : line) {
+      const Eigen::Vector2d at = Eigen::Vector2d(500000, 5000000) + Eigen::Rotation2Dd(0.3) * v;
+      vertices.push_back({at.x(), at.y()});
+    }
+    features.push_back({{"type", "Feature"},
+                        {"properties", {{"Layer", "WALL"}}},
+                        {"geometry", {{"type", "LineString"}, {"coordinates", vertices}}}});
+  }
+  return json{{"type", "FeatureCollection"}, {"features", features}}.dump();
+}
+
+TEST_F(ImportRules, APartitionThatMeetsAWallHasTwoCornersAndNoEnd) {
+  const Eigen::Vector2d west(-5, 0), middle(0, 0), east(5, 0), north(0, 4);
+  // The wall runs through without a vertex, with a vertex, or is drawn in two pieces.
+  for (const auto& lines : std::vector<std::vector<std::vector<Eigen::Vector2d>>>{
+           {{west, east}, {middle, north}},
+           {{north, middle}, {east, west}},
+           {{west, middle, east}, {middle, north}},
+           {{west, middle}, {middle, east}, {north, middle}},
+           {{west, middle, north}, {middle, east}}}) {
+    const Outcome said =
+        import(plan_of(lines), "plan.geojson", {"--rules", "floor_plan", "--crs", "EPSG:25832"});
+    ASSERT_EQ(said.code, 0) << said.err;
+    EXPECT_EQ(landmarks("wall_end").size(), 6U);  // of three ends
+    const json corners = landmarks("wall_corner");
+    ASSERT_EQ(corners.size(), 2U) << said.out;
+    std::vector<double> directions;
+    for (const json& corner : corners) {
+      EXPECT_NEAR(corner["x"], 500000, 0.01);
+      EXPECT_NEAR(corner["opening_angle"], std::numbers::pi / 2, 1e-3);
+      directions.push_back(corner["direction"]);
+    }
+    std::ranges::sort(directions);
+    EXPECT_NEAR(directions[0], -std::numbers::pi / 4 - 0.3,
+                0.06);  // north of the map is not that of the Earth
+    EXPECT_NEAR(directions[1], std::numbers::pi / 4 - 0.3, 0.06);
+  }
+  // Walls that cross have four corners.
+  ASSERT_EQ(import(plan_of({{west, middle, east}, {north, middle, -north}}), "plan.geojson",
+                   {"--rules", "floor_plan", "--crs", "EPSG:25832"})
+                .code,
+            0);
+  EXPECT_EQ(landmarks("wall_corner").size(), 4U);
+  // A partition that ends 20 cm before the wall does not meet it.
+  ASSERT_EQ(import(plan_of({{west, east}, {Eigen::Vector2d(0, 0.2), north}}), "plan.geojson",
+                   {"--rules", "floor_plan", "--crs", "EPSG:25832"})
+                .code,
+            0);
+  EXPECT_EQ(landmarks("wall_end").size(), 8U);
+  EXPECT_TRUE(landmarks("wall_corner").empty());
 }
 
 /// A wall of 6 m to the east and 4 m to the north, and a pole, in local_x and local_y; one wall lacks a node.

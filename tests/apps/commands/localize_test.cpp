@@ -385,5 +385,40 @@ TEST_F(Localize, ATrueYawMayGoOnTurning) {
   EXPECT_LT(score()["heading_rmse_deg"], 3);
 }
 
+// A sensor 0.2 m ahead and 0.3 m right of the place that the log states.
+TEST_F(Localize, ThePlaceOfTheSensorsIsEstimatedAndPrinted) {
+  MadeDrive drive;
+  drive.named = true;
+  drive.header =
+      R"(,"odometry_noise":{"along_per_metre":0.001,"across_per_metre":1e-5,"yaw_per_metre":1e-4,"yaw_per_radian":0.001})";
+  drive.change = [](int, const std::string& kind, const std::string& line) {
+    if (kind != "sightings") return line;
+    json record = json::parse(line);
+    for (json& item : record["items"]) {
+      const double range = item["range"], bearing = item["bearing"];
+      const double x = range * std::cos(bearing) - 0.2, y = range * std::sin(bearing) + 0.3;
+      item["range"] = std::hypot(x, y), item["bearing"] = std::atan2(y, x);
+    }
+    return record.dump();
+  };
+  const Outcome taken = localize(drive_log(drive), {"--format", "json"});
+  ASSERT_EQ(taken.code, 0) << taken.err;
+  EXPECT_TRUE(json::parse(taken.out)["sensor_place"].is_null());
+  const double without = score()["ate_rmse"];
+  EXPECT_GT(without, 0.25);
+  const Outcome said = localize(drive_log(drive), {"--format", "json", "--set", "mount_sd=0.5"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json place = json::parse(said.out)["sensor_place"];
+  const double forward = place["forward_m"], left = place["left_m"];
+  const double forward_sd = place["forward_sd_m"], left_sd = place["left_sd_m"];
+  EXPECT_LT(forward_sd, 0.1);
+  EXPECT_LT(left_sd, 0.1);
+  EXPECT_LT(std::abs(forward - 0.2), 3 * forward_sd);
+  EXPECT_LT(std::abs(left + 0.3), 3 * left_sd);
+  EXPECT_LT(double(score()["ate_rmse"]), without / 2);
+  EXPECT_THAT(localize(drive_log(drive), {"--set", "mount_sd=0.5"}).err,
+              HasSubstr("sensors, beside their place in the log: 0."));
+}
+
 }  // namespace
 }  // namespace waymark::test

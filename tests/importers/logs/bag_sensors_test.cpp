@@ -58,7 +58,7 @@ class BagSensors : public ::testing::Test {
   }();
 };
 
-TEST_F(BagSensors, SatelliteFixesHaveTheLargestDeviationOfTheirCovariance) {
+TEST_F(BagSensors, SatelliteFixesHaveTheirCovarianceAndItsLargestDeviation) {
   for (const bool big : {false, true}) {
     const RobotLog log =
         read({made_fix(big, 1, {.east = 4, .north = 9, .covariance_type = 2}),
@@ -72,6 +72,10 @@ TEST_F(BagSensors, SatelliteFixesHaveTheLargestDeviationOfTheirCovariance) {
     EXPECT_DOUBLE_EQ(fixes[1].second.sd, 3);
     EXPECT_DOUBLE_EQ(fixes[2].second.sd, std::sqrt(5));
     EXPECT_DOUBLE_EQ(fixes[3].second.sd, 3);
+    EXPECT_EQ(fixes[0].second.noise(), (Eigen::Matrix2d() << 4, 0, 0, 9).finished());
+    EXPECT_EQ(fixes[1].second.noise(), (Eigen::Matrix2d() << 5, 4, 4, 5).finished());
+    EXPECT_EQ(fixes[2].second.noise(), (Eigen::Matrix2d() << 5, 0, 0, 5).finished());
+    EXPECT_FALSE(fixes[3].second.covariance);
     EXPECT_EQ(fixes[0].second.at, Eigen::Vector2d(11, 48));
     EXPECT_EQ(log.fix_crs, "EPSG:4326");
     EXPECT_THAT(log.remarks,

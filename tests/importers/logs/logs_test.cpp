@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include <Eigen/Geometry>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
 
 #include "core/error.hpp"
+#include "geo/axes_rotation.hpp"
 #include "importers/logs/import_log.hpp"
 #include "localization/detectors/laser_stems.hpp"
 #include "localization/filters/kalman.hpp"
@@ -136,6 +138,33 @@ TEST_F(WaymarkLog, StatesTheNoiseOfItsOdometryAndSensors) {
   EXPECT_THAT(refusal(header(R"("scale_sd":3)")), HasSubstr("scale_sd = 3 is outside [0, 0.5]"));
   EXPECT_THAT(refusal(header(R"("drift_distance":0)")),
               HasSubstr("drift_distance = 0 is outside [0.1, 1000000]"));
+}
+
+TEST_F(WaymarkLog, AFixHasADeviationOrACovariance) {
+  RobotLog log = read(R"({"kind":"header","frame":"crs","start":{"x":700000,"y":0,"yaw":0}}
+{"kind":"gnss","t":0,"x":700000,"y":0,"var_x":4.67,"var_y":6.05}
+{"kind":"gnss","t":1,"x":700000,"y":5000000,"var_x":5,"var_y":5,"cov_xy":-4}
+)");
+  ASSERT_EQ(log.events.size(), 2U);
+  const auto& plain = std::get<GnssFix>(log.events[0].what);
+  EXPECT_NEAR(plain.sd, std::sqrt(6.05), 1e-12);
+  EXPECT_EQ(plain.noise(), (Eigen::Matrix2d() << 4.67, 0, 0, 6.05).finished());
+  EXPECT_NEAR(std::get<GnssFix>(log.events[1].what).sd, 3, 1e-12);
+  // The map frame is turned against the grid by the convergence: 2.6 degrees in the north-east of a zone.
+  const LocalFrame frame(Crs::from_text("EPSG:32633"), {{700000, 6500000, 0}});
+  log.start = Pose2{700000, 6500000, 0};
+  const double angle = -grid_rotation(frame, {0, 0});
+  ASSERT_GT(std::abs(angle), 0.02);
+  convert_to_map_frame(log, frame);
+  const Eigen::Matrix2d axes = Eigen::Rotation2Dd(angle).toRotationMatrix();
+  const Eigen::Matrix2d turned = axes * Eigen::Vector2d(4.67, 6.05).asDiagonal() * axes.transpose();
+  EXPECT_LT((std::get<GnssFix>(log.events[0].what).noise() - turned).norm(), 1e-9);
+
+  const std::string fix = R"({"kind":"gnss","t":0,"x":1,"y":2,)";
+  EXPECT_THAT(refusal(fix + R"("sd":1,"var_x":1,"var_y":1})"), HasSubstr("one of both is needed"));
+  EXPECT_THAT(refusal(fix + R"("var_x":1})"), HasSubstr("has no \"var_y\""));
+  EXPECT_THAT(refusal(fix + R"("var_x":1,"var_y":-1})"), HasSubstr("are no covariance"));
+  EXPECT_THAT(refusal(fix + R"("var_x":1,"var_y":1,"cov_xy":1})"), HasSubstr("are no covariance"));
 }
 
 TEST_F(WaymarkLog, SaysWhatIsWrongAndWhere) {

@@ -40,6 +40,17 @@ TEST(CloudSigns, AreFoundByIntensityAndByShape) {
   }
 }
 
+TEST(CloudSigns, IntensitiesThatAreAllAlikeAreNone) {
+  const PointCloud plain = without_intensities(scan_street(signs_and_wall(), 1, 10));
+  for (const float intensity : {0.0F, 255.0F}) {
+    PointCloud alike = plain;
+    alike.intensities.assign(alike.points.size(), intensity);
+    const auto signs = find_signs(alike), expected = find_signs(plain);
+    ASSERT_EQ(signs.size(), expected.size()) << intensity;
+    for (std::size_t i = 0; i < signs.size(); ++i) EXPECT_EQ(signs[i].at, expected[i].at);
+  }
+}
+
 TEST(CloudSigns, AreFoundInUnitsOfAnyScanner) {
   PointCloud cloud = scan_street(signs_and_wall(), 2, 10);
   for (float& intensity : cloud.intensities) intensity *= 255;

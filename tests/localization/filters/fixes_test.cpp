@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <numbers>
 
 #include "localization/filters/kalman.hpp"
@@ -35,6 +37,25 @@ TEST(Fixes, PositionAndHeadingAreTheProductOfGaussians) {
     EXPECT_TRUE(filter->fix(HeadingFix{0.2, 0.2}));
     EXPECT_NEAR(filter->estimate().pose.yaw, 0.1, 0.03);
     EXPECT_NEAR(filter->estimate().covariance(2, 2), 0.02, 0.005);
+  }
+}
+
+TEST(Fixes, PositionsAreAsCertainAsTheirCovarianceInEachDirection) {
+  // 1 m along the diagonal and 0.1 m across it; the pose is known to 1 m.
+  const Eigen::Matrix2d turn = Eigen::Rotation2Dd(std::numbers::pi / 4).toRotationMatrix();
+  const GnssFix fix =
+      fix_of_covariance({1, -1}, turn * Eigen::Vector2d(1, 0.01).asDiagonal() * turn.transpose());
+  EXPECT_NEAR(fix.sd, 1, 1e-12);
+  const PoseEstimate start{{0, 0, 0}, Eigen::Vector3d(1, 1, 0.04).asDiagonal()};
+  const Eigen::Vector2d across(std::sqrt(0.5), -std::sqrt(0.5)), along(std::sqrt(0.5), std::sqrt(0.5));
+  for (const auto& filter : all_filters(start, LandmarkMatcher(LandmarkWindow{LandmarkGrid{}}))) {
+    EXPECT_TRUE(filter->fix(fix));
+    const PoseEstimate at = filter->estimate();
+    const Eigen::Matrix2d covariance = at.covariance.topLeftCorner<2, 2>();
+    EXPECT_NEAR(across.dot(at.pose.at()), std::sqrt(2.0) / 1.01, 0.05);
+    EXPECT_NEAR(along.dot(at.pose.at()), 0, 0.1);
+    EXPECT_NEAR(across.dot(covariance * across), 0.01 / 1.01, 0.004);
+    EXPECT_NEAR(along.dot(covariance * along), 0.5, 0.1);
   }
 }
 

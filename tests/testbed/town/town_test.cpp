@@ -83,6 +83,23 @@ TEST(Town, WallsLieOnTheStatedSideOfTheirEnds) {
   EXPECT_GT(ends, 20);
 }
 
+TEST(Town, WallsAreOnBothSidesOfACorridor) {
+  const HallModel model;
+  const Town hall = plan_hall(model, 5, 6);
+  int walls = 0, towards_the_middle = 0;
+  for (const TownLandmark& l : hall.landmarks) {
+    if (l.type != "wall") continue;
+    ++walls;
+    const Eigen::Vector2d normal(std::sin(*l.direction), std::cos(*l.direction));
+    // Half a corridor in front of its face runs the middle line of the corridor.
+    const double line = (std::abs(normal.x()) > 0.5 ? model.length : model.width) / 2;
+    EXPECT_NEAR(std::abs(l.at.dot(normal) + model.corridor_width / 2), line, 1e-9) << l.at.transpose();
+    towards_the_middle += l.at.dot(normal) < 0;
+  }
+  EXPECT_EQ(walls - towards_the_middle, 4);  // those of the core
+  EXPECT_GT(towards_the_middle, 10);
+}
+
 TEST(Town, DrivesDifferInCarsAndDoorsOnly) {
   const auto landmarks = [](const Town& town) { return town_table(town); };
   const Town first = plan_street({}, 5, 1), second = plan_street({}, 5, 2);
