@@ -7,7 +7,7 @@
 namespace waymark::inline core {
 
 /// Returns the content of a file. Throws Error{code}, "cannot read `what`", if the file does not exist, is a
-/// folder, or cannot be read.
+/// folder or a device without end, or cannot be read.
 std::string read_text(const std::filesystem::path& file, std::string_view what,
                       ErrorCode code = ErrorCode::input, std::string_view hint = "check the path");
 

@@ -30,5 +30,18 @@ TEST(TextFile, SaysWhatCannotBeRead) {
     }
 }
 
+TEST(TextFile, DevicesWithoutEndAreRefused) {
+  EXPECT_EQ(read_text("/dev/null", "this"), "");
+  try {
+    read_text("/dev/zero", "the table", ErrorCode::usage, "look");
+    ADD_FAILURE();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ErrorCode::usage);
+    EXPECT_EQ(error.problem(), "cannot read the table: the device does not end");
+    EXPECT_EQ(error.where(), "/dev/zero");
+    EXPECT_EQ(error.hint(), "look");
+  }
+}
+
 }  // namespace
 }  // namespace waymark::test

@@ -46,6 +46,10 @@ TEST(HashFile, OfAVirtualRasterSeesItsSources) {
   EXPECT_NE(hash_file(vrt).sha256, before);
 }
 
+TEST(HashFile, OfADeviceEnds) {
+  EXPECT_EQ(hash_file("/dev/zero").bytes, 0u);
+}
+
 TEST(HashFile, SaysWhichFileIsMissing) {
   EXPECT_THAT(message_of([] { hash_file("/no/such/file"); }),
               AllOf(HasSubstr("the file cannot be read"), HasSubstr("/no/such/file")));

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <span>
 
 #include "core/error.hpp"
 #include "core/keep_inputs.hpp"
+#include "core/printable.hpp"
 #include "geodb/write_map.hpp"
 #include "importers/logs/import_log.hpp"
 #include "importers/rules/ready_rules.hpp"
@@ -102,9 +105,20 @@ geodb::RunRecord run_record(const importers::ImportedTable& table, const std::st
   return make_single_step_record(std::move(stage), file, command_line, started);
 }
 
+/// Returns what fits on a screen: a table may have any number of columns, with names of any length.
+std::string shown_columns(std::span<const std::string> columns) {
+  constexpr std::size_t kMaxColumns = 20, kMaxNameBytes = 60;
+  const std::size_t shown = std::min(columns.size(), kMaxColumns);
+  std::string text;
+  for (const std::string& column : columns.first(shown))
+    text += (text.empty() ? "" : ", ") + printable(column, kMaxNameBytes);
+  if (columns.size() > shown) text += fmt::format(" and {} more", columns.size() - shown);
+  return text;
+}
+
 void send_counts(const importers::ImportedTable& table, bool by_rules, const Callbacks& callbacks) {
   callbacks.summary(fmt::format("{}\n", fmt::join(table.bindings, by_rules ? "\n" : ", ")));
-  if (!table.unused.empty()) callbacks.summary(fmt::format("not used: {}\n", fmt::join(table.unused, ", ")));
+  if (!table.unused.empty()) callbacks.summary(fmt::format("not used: {}\n", shown_columns(table.unused)));
   for (const std::string& warning : table.warnings) callbacks.warning(warning);
   callbacks.summary(fmt::format("{} rows, {} landmarks, {} rejected\n", table.rows, table.landmarks,
                                 table.rows - table.landmarks));

@@ -56,6 +56,16 @@ TEST_F(Import, ColumnsThatAreNotUsedAreNamed) {
               testing::Not(HasSubstr("not used")));
 }
 
+TEST_F(Import, ColumnsThatAreNotUsedFillNoScreen) {
+  std::string header = "x,y,radius," + std::string(1'000'000, 'c'), row = "1,2,0.5,7";
+  for (int i = 0; i < 5000; ++i) header += ",n" + std::to_string(i), row += ",1";
+  const Outcome said = import(header + "\n" + row + "\n", {"--type", "rock", "--map-crs", "local"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  EXPECT_THAT(said.err, HasSubstr("n0, n1"));
+  EXPECT_THAT(said.err, HasSubstr("n18 and 4981 more\n"));
+  EXPECT_LT(said.err.size(), 800u);
+}
+
 TEST_F(Import, ARecursiveViewIsRefused) {
   ASSERT_EQ(import("x,y,radius\n1,1,3\n", {"--type", "rock", "--map-crs", "local"}).code, 0);
   sqlite3* database = nullptr;
