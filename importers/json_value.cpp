@@ -4,6 +4,7 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
@@ -168,7 +169,14 @@ std::string read_vsi_head(const std::string& path, std::size_t bytes) {
 }
 
 std::string read_vsi_text(const std::string& path) {
-  return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
+  constexpr std::size_t kMaxDeviceBytes = 1 << 20;  // /dev/zero has no end
+  VSIStatBufL status;
+  if (VSIStatL(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode))
+    return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
+  std::string content = read_vsi_head(path, kMaxDeviceBytes + 1);
+  if (content.size() > kMaxDeviceBytes)
+    throw Error(ErrorCode::input, "the file cannot be read: the device does not end", path, "check the path");
+  return content;
 }
 
 }  // namespace waymark::importers
