@@ -23,7 +23,8 @@ struct UprightShape {
 double column_step(const PointCloud& cloud);
 
 /// Fits a circle to the points of a pole as the scanner sees it.
-/// - The diameter follows from the angle that each layer of 0.25 m fills, not from the depth of the arc: noise
+/// - The diameter follows from the angle that each layer of 0.25 m fills, not from the depth of the arc:
+/// noise
 ///   of the ranges is as large as that depth. Of the layers the median counts: a sign on a post is wider.
 /// - The axis lies behind the points by the depth of the circle there.
 /// - Narrow poles far away are one column wide: the diameter is then near that of usual poles, 0.2 m.

@@ -34,7 +34,7 @@ struct RangeViews {
 /// - A type is not expected beyond the range at which it has been seen, nor one that was never seen.
 class DetectionRates {
  public:
-  /// Notes a sighting: how far the sensor sees this type, or everything if it tells no types.
+  /// Notes a sighting: how far the sensor sees this type, or everything if it gives no types.
   void note(std::optional<TypeId> type, double range);
   /// Returns the largest range noted that applies to a type, m; 0 if there is none.
   double reach(std::optional<TypeId> type) const;
