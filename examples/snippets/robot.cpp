@@ -31,7 +31,7 @@ void drive() {
   std::cout << importers::level_pose(place).x << " m ahead of the middle\n";
   const importers::Covariance3 covariance{4, 0, 0, 0, 4, 0, 0, 0, 9};  // m^2: east, north, up
   const localization::GnssFix fix =
-      importers::fix_of_antenna(11, 48, importers::horizontal_sd(covariance, 2), 0.3);
+      importers::fix_of_antenna(11, 48, importers::horizontal_covariance(covariance, 2), 0.3);
   std::cout << "fix of " << fix.sd << " m\n";
   //! [readings]
 
