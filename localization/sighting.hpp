@@ -95,7 +95,6 @@ struct SightingSet {
   /// Of a panorama, from the robot's forward axis, for a PoseFinder only.
   std::shared_ptr<const HorizonProfile> horizon = {};
   std::shared_ptr<const RangeProfile> ranges = {};  ///< of a level line scan; null: what hides is not known
-  std::uint8_t sensor = 0;  ///< sensors see different landmarks: 1 for a 3-D scanner, 0 for all others
 };
 
 inline bool SeenLandmark::is_valid() const {

@@ -135,11 +135,7 @@ PointDetector make_point_detector(const TypeRegistry& types, std::span<const Typ
   std::vector<PointDetector> detectors;
   for (const DetectorSpec& detector : point_detectors())
     if (makes_type_of(detector, of_map)) detectors.push_back(detector.make_points(types));
-  return [detect = detect_held(std::move(detectors), of_map)](const PointCloud& cloud) {
-    SightingSet seen = detect(cloud);
-    seen.sensor = 1;
-    return seen;
-  };
+  return detect_held(std::move(detectors), of_map);
 }
 
 LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options,

@@ -89,12 +89,24 @@ Circle fit_arc(const Points& points) {
   return circle;
 }
 
-// Returns whether an arc is that of a stem: as precise as the ranges, and no plate.
-bool is_stem(const Circle& arc, const Points& points, double max_diameter) {
+// Returns whether points lie on all sides of a circle, as in clouds of several scans.
+bool surround(const Points& points, const Circle& circle) {
+  const Eigen::Vector2d middle = mean(points), along = middle.normalized();
+  double squares = 0;
+  for (const Eigen::Vector2d& p : points) squares += std::pow(along.dot(p - middle), 2);
+  const double depth_sd = std::sqrt(squares / static_cast<double>(points.size()));
+  return depth_sd > 1.5 * kRangeSd && depth_sd > 0.6 * circle.radius &&
+         mean_square(points, circle) < kRangeSd * kRangeSd;
+}
+
+// Returns whether an arc gives the circle: that of a stem, as precise as the ranges and no plate, or a whole
+// one.
+bool is_circle(const Circle& arc, const Points& points, double max_diameter) {
+  if (!arc.centre.allFinite() || 2 * arc.radius > max_diameter) return false;
   const double squares = mean_square(points, arc);
-  return arc.centre.allFinite() && arc.radius > kMinStem && 2 * arc.radius <= max_diameter &&
-         arc.radius_variance < kStemSd * kStemSd && squares < 4 * kRangeSd * kRangeSd &&
-         squares < mean_square_of_line(points);
+  return surround(points, arc) ||
+         (arc.radius > kMinStem && arc.radius_variance < kStemSd * kStemSd &&
+          squares < 4 * kRangeSd * kRangeSd && squares < mean_square_of_line(points));
 }
 
 bool is_plate(const Circle& circle, const Points& points) {
@@ -192,7 +204,7 @@ std::optional<UprightShape> fit_upright(std::span<const RaisedPoint> points, dou
   Silhouette pole;
   for (const RaisedPoint& p : points) pole.points.push_back(p.at.cast<double>());
   Circle circle = fit_arc(pole.points);
-  if (!is_stem(circle, pole.points, max_diameter)) {
+  if (!is_circle(circle, pole.points, max_diameter)) {
     pole = narrow_layers(points, mean(pole.points).normalized(), step);
     circle = circle_within(pole, step);
     if (is_plate(circle, pole.points)) return {};

@@ -141,14 +141,12 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
     covariance += e.by_landmark * (landmark.slot ? state_.covariance(*landmark.slot) : landmark.covariance) *
                   e.by_landmark.transpose();
     // Expects detections only within the range and view that the sensor has shown, and where nothing hides
-    // them. What the beams do not reach in a map may be gone or at another place: nothing hides that.
-    const double farthest = landmark.was_mapped ? rates_[seen.sensor].reach(landmark.type) : reach_;
-    const bool in_view = !landmark.line && range < 0.7 * std::min(options_.max_range, farthest) &&
-                         std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
-                         (!visible_ || visible_(sensor, position(l)));
-    const bool in_sight = in_view && (!seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
-    const bool expected = map_.empty() ? in_sight : in_view;
-    near.push_back({l, expected, e, covariance, extent, in_sight});
+    // them. With a map nothing counts as hidden: what is expected also decides whether the robot is lost.
+    const bool expected = !landmark.line && range < 0.7 * std::min(options_.max_range, reach_) &&
+                          std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
+                          (!visible_ || visible_(sensor, position(l))) &&
+                          (!map_.empty() || !seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
+    near.push_back({l, expected, e, covariance, extent});
   };
   for (const SlamState::Slot slot : state_.active())
     if (const std::size_t l = landmark_by_slot_[slot]; landmarks_[l].slot == slot) look_at(l);
@@ -199,10 +197,8 @@ void EkfSlam::note_reach(const SightingSet& seen) {
       sees_bearings_ = true;
     else if (!s.bearing)
       heard_ = std::max(heard_, *s.range);
-    else {
+    else
       reach_ = std::max(reach_, *s.range), view_ = std::max(view_, std::abs(*s.bearing));
-      rates_[seen.sensor].note(s.type, *s.range);
-    }
   }
 }
 
@@ -217,7 +213,6 @@ SightingSet EkfSlam::with_features_in_map(SightingSet seen) const {
 }
 
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
-  if (rates_.size() <= set.sensor) rates_.resize(set.sensor + std::size_t{1});
   note_reach(set);
   apply_pending_motion();
   const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
@@ -230,7 +225,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   std::vector<bool> is_found(landmarks_.size(), false);
   for (const std::optional<std::size_t>& landmark : last_)
     if (landmark) is_found[*landmark] = true;
-  update_existence(set.sensor, near, is_found);
+  update_existence(near, is_found);
   add_new(seen, found.comparisons, matches);
   if (search_) check_relocalization(set, near, is_found);
   return matches;
@@ -370,8 +365,7 @@ void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   landmarks_.push_back(std::move(fresh));
 }
 
-void EkfSlam::update_existence(std::uint8_t sensor, std::span<const SlamCandidate> near,
-                               const std::vector<bool>& found) {
+void EkfSlam::update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found) {
   const double unseen = unseen_evidence(detection(), options_.unseen);
   for (const SlamCandidate& candidate : near) {
     const std::size_t i = candidate.landmark;
@@ -379,14 +373,10 @@ void EkfSlam::update_existence(std::uint8_t sensor, std::span<const SlamCandidat
     SlamLandmark& l = landmarks_[i];
     if (found[i] || is_expected) ++l.expected;
     if (is_expected && l.log_odds >= options_.confirmed) hits_ += found[i], ++chances_;
-    if (!is_expected) continue;
-    const double range = candidate.sighting.value[0];
-    // A landmark of the map has been seen by others. A new one must prove itself: misses count in full.
-    const double miss = l.was_mapped ? std::max(options_.unseen, log_miss(l, sensor, range)) : unseen;
-    add_view(l, sensor, range, found[i]);
     // A landmark with an identity exists: a misread identity is rarer than a missed detection.
-    if (found[i] || (options_.identification.use_identities && l.key && l.matches > 0)) continue;
-    l.log_odds += miss;
+    if (!is_expected || found[i] || (options_.identification.use_identities && l.key && l.matches > 0))
+      continue;
+    l.log_odds += unseen;
     if (l.log_odds >= options_.dropped) continue;
     if (l.key) landmark_by_key_.erase(*l.key);
     l.gone = true;
@@ -398,25 +388,6 @@ void EkfSlam::update_existence(std::uint8_t sensor, std::span<const SlamCandidat
     }
     l.feature_samples = {};
   }
-}
-
-// Returns the log probability that the next view of a landmark that exists misses it.
-double EkfSlam::log_miss(const SlamLandmark& landmark, std::uint8_t sensor, double range) const {
-  static const RangeViews none;
-  return rates_[sensor].log_miss(landmark.type, range,
-                                 sensor < landmark.views.size() ? landmark.views[sensor] : none);
-}
-
-// Views before the first sighting of a landmark teach its type once it is known that it exists.
-void EkfSlam::add_view(SlamLandmark& landmark, std::uint8_t sensor, double range, bool is_found) {
-  if (landmark.views.size() <= sensor) landmark.views.resize(sensor + std::size_t{1});
-  RangeViews& views = landmark.views[sensor];
-  RangeViews view;
-  view.last_seen = views.last_seen;
-  view.add(range, is_found);
-  views.add(range, is_found);
-  if (landmark.matches > 0) rates_[sensor].learn(landmark.type, views.is_learnt ? view : views);
-  views.is_learnt = landmark.matches > 0;
 }
 
 std::vector<SlamLandmark> EkfSlam::landmark_states() {

@@ -13,7 +13,6 @@
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/slam/bearing_starts.hpp"
-#include "localization/slam/detection_rates.hpp"
 #include "localization/slam/slam_association.hpp"
 #include "localization/slam/slam_landmark.hpp"
 #include "localization/slam/slam_options.hpp"
@@ -106,10 +105,7 @@ class EkfSlam final : public Localizer {
   void see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor);
   void add(const BearingStarts::Start& start, const SightingSet& seen);
   void append(SlamLandmark fresh, const SeenLandmark& seen);
-  void update_existence(std::uint8_t sensor, std::span<const SlamCandidate> near,
-                        const std::vector<bool>& found);
-  double log_miss(const SlamLandmark& landmark, std::uint8_t sensor, double range) const;
-  void add_view(SlamLandmark& landmark, std::uint8_t sensor, double range, bool is_found);
+  void update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found);
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,
                             const std::vector<bool>& found);
@@ -134,7 +130,6 @@ class EkfSlam final : public Localizer {
   double heard_ = 0;                                          ///< m, largest range without bearing
   double line_reach_ = 0;                                     ///< m, to the farther end of a line
   bool sees_bearings_ = false;                                ///< a sighting had no range
-  std::vector<DetectionRates> rates_{1};                      ///< by sensor
   BearingStarts starts_;
   double hits_ = 0, chances_ = 0;
   std::size_t unplaced_ranges_ = 0;

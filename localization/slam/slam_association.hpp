@@ -19,7 +19,6 @@ struct SlamCandidate {
       covariance;  ///< of `sighting` by the errors of pose and landmark, without the sensor's noise
   /// Where pieces of a line may lie, from the foot of the sensor on it; absent for a point.
   std::optional<LineExtent> extent = {};
-  bool is_in_sight = false;  ///< it is expected, and nothing that a scan shows hides it
 };
 
 /// A sighting and the landmark that it may show.

@@ -7,7 +7,6 @@
 #include <vector>
 #include "localization/identification/known_features.hpp"
 #include "localization/identification/map_landmark.hpp"
-#include "localization/slam/detection_rates.hpp"
 #include "localization/slam/slam_line.hpp"
 #include "localization/slam/slam_state.hpp"
 namespace waymark::localization {
@@ -19,7 +18,6 @@ struct SlamLandmark {
   double log_odds = 0;  ///< of its existence: the evidence counter of section 4.4
   std::int64_t matches = 0;
   std::int64_t expected = 0;       ///< sets of sightings that should have shown it, matched ones included
-  std::vector<RangeViews> views;   ///< by sensor, where it was expected
   std::optional<LandmarkKey> key;  ///< of the map's landmark, or of the identity it was seen with
   bool gone = false;               ///< removed because the evidence says it does not exist
   bool was_mapped = false;         ///< it was in the initial map

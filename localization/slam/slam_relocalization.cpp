@@ -162,8 +162,8 @@ void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const Slam
   for (const SlamCandidate& candidate : near) {
     const std::size_t i = candidate.landmark;
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
-    evidence.expected += candidate.is_in_sight;
-    evidence.found += candidate.is_in_sight && found[i];
+    evidence.expected += candidate.is_expected;
+    evidence.found += candidate.is_expected && found[i];
     evidence.matched += found[i];
   }
   if (rival_) compare_with_rival(seen);

@@ -94,6 +94,23 @@ TEST(UprightShape, OfAStemDoesNotNeedItsHiddenSide) {
   EXPECT_NEAR(e.diameter, 0, 0.03);
 }
 
+// Several scans in one cloud see a pole from all sides.
+TEST(UprightShape, OfAWholeCircleIsThatCircle) {
+  std::vector<RaisedPoint> points;
+  for (float height = 0.3F; height < 2; height += 0.1F)
+    for (int i = 0; i < 8; ++i)
+      points.push_back(
+          {Eigen::Vector2f(6, 2) + 0.1F * Eigen::Vector2f(std::cos(0.785F * static_cast<float>(i)),
+                                                          std::sin(0.785F * static_cast<float>(i))),
+           height});
+  for (const double step : {0.0, kStep}) {
+    const auto shape = fit_upright(points, step, 0.7);
+    ASSERT_TRUE(shape);
+    EXPECT_LT((shape->axis - Eigen::Vector2d(6, 2)).norm(), 0.01);
+    EXPECT_NEAR(shape->diameter, 0.2, 0.01);
+  }
+}
+
 TEST(UprightShape, IsNoPlateAndNothingWide) {
   for (unsigned seed = 1; seed <= 20; ++seed) {
     EXPECT_FALSE(fit_upright(seen({{{8, 0}, 0.3, 0.3, 2, true}}, seed), kStep, 0.7)) << seed;

@@ -221,44 +221,6 @@ TEST(EkfSlam, LandmarksHiddenByTerrainAreNotExpected) {
   EXPECT_LT(odds(open), log_odds(0.9) - 0.3);
 }
 
-// Lamps on the left are seen from 30 m, thin posts on the right from 6 m. A second sensor sees the lamps
-// alone. One post is not there.
-TEST(EkfSlam, WhatIsSeenOnlyFromNearIsNotGoneBefore) {
-  constexpr LandmarkKey kAbsent = 105;
-  constexpr TypeId kLamp = 0, kPost = 1;
-  std::vector<MapLandmark> map;
-  for (unsigned i = 0; i < 10; ++i) {
-    map.push_back(landmark_at(10 + 6 * i, 4, i + 1));
-    map.push_back(landmark_at(12 + 6 * i, -1.5, 100 + i));
-    map.back().type = kPost;
-  }
-  for (MapLandmark& l : map) l.quality = 0.7, l.covariance = Eigen::Matrix2d::Identity() * 1e-4;
-  SlamOptions options;
-  options.nearest = 0.5;
-  EkfSlam slam(known_pose({}), LandmarkGrid(map), {}, options);
-  for (int i = 0; i < 320; ++i) {
-    const Eigen::Vector2d robot(0.2 * i, 0);
-    SightingSet seen;
-    seen.sensor = i % 2 == 0 ? 0 : 1;
-    for (const MapLandmark& l : map) {
-      const Eigen::Vector2d to = l.at - robot;
-      const bool is_lamp = l.key < 100;
-      if (l.key == kAbsent || to.x() < 0 || to.norm() > (is_lamp ? 30 : seen.sensor == 0 ? 6 : 0)) continue;
-      seen.sightings.push_back(seen_at(to.norm(), std::atan2(to.y(), to.x())));
-      seen.sightings.back().type = is_lamp ? kLamp : kPost;
-    }
-    slam.update(seen);
-    slam.predict({.step = {0.2, 0, 0}, .covariance = Eigen::Vector3d(1e-5, 1e-6, 1e-7).asDiagonal()});
-  }
-  EXPECT_EQ(slam.landmarks().size(), map.size()) << "none is new";
-  for (const SlamLandmark& l : slam.landmarks()) {
-    EXPECT_EQ(l.gone, l.key == kAbsent) << *l.key;
-    if (l.key != kAbsent) {
-      EXPECT_GT(l.matches, 3) << *l.key;
-    }
-  }
-}
-
 // Filters would leave it out beside likely ones; then it would count as missing, and start again as another.
 TEST(EkfSlam, ADoubtfulLandmarkThatIsSeenIsConfirmed) {
   MapLandmark doubtful = landmark_at(5, 0, 3);
