@@ -18,11 +18,13 @@ constexpr double kUsualRadius = 0.1, kUsualRadiusSd = 0.08;  // m, of poles in t
 constexpr double kLean = 0.02;                               // m: poles lean and carry things
 constexpr double kRough = 0.04;                              // m about a circle: poles carry things
 constexpr double kMinStem = 0.15;                            // m, radius: noise falsifies smaller arcs
-constexpr double kStemSd = 0.05;                             // m of that radius
-constexpr double kMinPlate = 0.15;                           // m, half of its width
-constexpr double kSurelyFlat = 4.6;                          // logarithm of the ratio of likelihoods, 100
-constexpr double kWider = 1.5;  // of the narrow layers: what is wider shows something else
-constexpr float kRow = 0.001F;  // rad between points of a row, in elevation
+constexpr std::size_t kMany = 40;    // points: that fewer are so precise may be chance
+constexpr double kPrecise = 0.01;    // m about such an arc
+constexpr double kStemSd = 0.05;     // m of that radius
+constexpr double kMinPlate = 0.15;   // m, half of its width
+constexpr double kSurelyFlat = 4.6;  // logarithm of the ratio of likelihoods, 100
+constexpr double kWider = 1.5;       // of the narrow layers: what is wider shows something else
+constexpr float kRow = 0.001F;       // rad between points of a row, in elevation
 constexpr float kMaxSlope = 2;
 constexpr int kSampledRows = 8;    // one of so many is looked at
 constexpr float kMaxStep = 0.03F;  // rad: what is farther apart are no neighbours
@@ -65,10 +67,25 @@ double mean_square_of_line(const Points& points) {
   return axes.eigenvalues()[0] / static_cast<double>(points.size());
 }
 
+// Returns a circle by linear least squares (Kasa 1976); one of usual size behind the points if that lies
+// before them.
+Circle first_circle(const Points& points) {
+  const Eigen::Vector2d middle = mean(points);
+  Eigen::Matrix2d squares = 1e-12 * Eigen::Matrix2d::Identity();
+  Eigen::Vector2d cubes = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d& p : points) {
+    const Eigen::Vector2d off = p - middle;
+    squares += off * off.transpose(), cubes += off.squaredNorm() * off;
+  }
+  const Eigen::Vector2d off = squares.inverse() * cubes / 2;
+  const double radius = std::sqrt(off.squaredNorm() + squares.trace() / static_cast<double>(points.size()));
+  if (off.dot(middle.normalized()) > -kRangeSd && radius < 1) return {middle + off, radius};
+  return {middle + kUsualRadius * middle.normalized(), kUsualRadius};
+}
+
 // Fits a circle to the arc alone (Gauss-Newton).
 Circle fit_arc(const Points& points) {
-  const Eigen::Vector2d middle = mean(points);
-  Circle circle{.centre = middle + kUsualRadius * middle.normalized(), .radius = kUsualRadius};
+  Circle circle = first_circle(points);
   Eigen::Matrix3d information;
   for (int step = 0; step < 8; ++step) {
     Eigen::Vector3d gradient = Eigen::Vector3d::Zero();
@@ -99,14 +116,14 @@ bool surround(const Points& points, const Circle& circle) {
          mean_square(points, circle) < kRangeSd * kRangeSd;
 }
 
-// Returns whether an arc gives the circle: that of a stem, as precise as the ranges and no plate, or a whole
-// one.
+// Returns whether an arc gives the circle: that of a stem, one whose ranges are precise, or a whole circle.
 bool is_circle(const Circle& arc, const Points& points, double max_diameter) {
   if (!arc.centre.allFinite() || 2 * arc.radius > max_diameter) return false;
+  if (surround(points, arc)) return true;
   const double squares = mean_square(points, arc);
-  return surround(points, arc) ||
-         (arc.radius > kMinStem && arc.radius_variance < kStemSd * kStemSd &&
-          squares < 4 * kRangeSd * kRangeSd && squares < mean_square_of_line(points));
+  const double max_rms = arc.radius > kMinStem ? 2 * kRangeSd : points.size() >= kMany ? kPrecise : 0;
+  return arc.radius_variance < kStemSd * kStemSd && squares < max_rms * max_rms &&
+         squares < mean_square_of_line(points);
 }
 
 bool is_plate(const Circle& circle, const Points& points) {

@@ -6,6 +6,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <random>
 
 namespace waymark::test {
@@ -96,18 +97,20 @@ TEST(UprightShape, OfAStemDoesNotNeedItsHiddenSide) {
 
 // Several scans in one cloud see a pole from all sides.
 TEST(UprightShape, OfAWholeCircleIsThatCircle) {
-  std::vector<RaisedPoint> points;
-  for (float height = 0.3F; height < 2; height += 0.1F)
-    for (int i = 0; i < 8; ++i)
-      points.push_back(
-          {Eigen::Vector2f(6, 2) + 0.1F * Eigen::Vector2f(std::cos(0.785F * static_cast<float>(i)),
-                                                          std::sin(0.785F * static_cast<float>(i))),
-           height});
-  for (const double step : {0.0, kStep}) {
-    const auto shape = fit_upright(points, step, 0.7);
-    ASSERT_TRUE(shape);
-    EXPECT_LT((shape->axis - Eigen::Vector2d(6, 2)).norm(), 0.01);
-    EXPECT_NEAR(shape->diameter, 0.2, 0.01);
+  for (const Eigen::Vector2d& at : {Eigen::Vector2d(5.5, 1.9), Eigen::Vector2d(-3.5, -7.1)}) {
+    std::vector<RaisedPoint> points;
+    for (int layer = 0; layer < 20; ++layer)
+      for (int i = 0; i < 8; ++i) {
+        const double angle = i * std::numbers::pi / 4;
+        points.push_back({(at + 0.1 * Eigen::Vector2d(std::cos(angle), std::sin(angle))).cast<float>(),
+                          0.3F + 0.1F * static_cast<float>(layer)});
+      }
+    for (const double step : {0.0, kStep, 0.02}) {
+      const auto shape = fit_upright(points, step, 0.7);
+      ASSERT_TRUE(shape);
+      EXPECT_LT((shape->axis - at).norm(), 0.01);
+      EXPECT_NEAR(shape->diameter, 0.2, 0.01);
+    }
   }
 }
 
