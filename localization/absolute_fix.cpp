@@ -34,6 +34,15 @@ GnssFix fix_of_covariance(const Eigen::Vector2d& at, const Eigen::Matrix2d& cova
   return {at, std::sqrt(largest), covariance};
 }
 
+FixInnovation innovation(const Pose2& pose, const GnssFix& fix) {
+  return {fix.at - pose.at(), Eigen::Matrix<double, 2, 3>::Identity(), fix.noise()};
+}
+
+FixInnovation innovation(const Pose2& pose, const HeadingFix& fix) {
+  return {Eigen::Matrix<double, 1, 1>(wrap_angle(fix.yaw - pose.yaw)), Eigen::RowVector3d(0, 0, 1),
+          Eigen::Matrix<double, 1, 1>(fix.sd * fix.sd)};
+}
+
 FixUpdate update_pose(const PoseEstimate& estimate, const GnssFix& fix) {
   Eigen::Matrix<double, 2, 3> h = Eigen::Matrix<double, 2, 3>::Zero();
   h(0, 0) = h(1, 1) = 1;

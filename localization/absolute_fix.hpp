@@ -23,6 +23,15 @@ struct HeadingFix {
   double yaw = 0, sd = 0.1;  ///< rad
 };
 
+/// What a fix of n numbers says of a pose.
+struct FixInnovation {
+  Eigen::VectorXd value;  ///< n: measured less estimated; m, rad
+  Eigen::Matrix<double, Eigen::Dynamic, 3> by_pose;
+  Eigen::MatrixXd noise;  ///< n x n
+};
+FixInnovation innovation(const Pose2& pose, const GnssFix& fix);
+FixInnovation innovation(const Pose2& pose, const HeadingFix& fix);
+
 /// Result of a Kalman update by a fix.
 struct FixUpdate {
   PoseEstimate estimate;   ///< Joseph form

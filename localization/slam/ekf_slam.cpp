@@ -92,6 +92,24 @@ void EkfSlam::apply_pending_motion() {
   if (moved >= options_.margin || moved + reach() > focused_) focus();
 }
 
+template <class Fix>
+bool EkfSlam::apply_fix(const Fix& measured, int rows) {
+  apply_pending_motion();
+  if (rival_) rival_->fix(measured);
+  if (tracker_) tracker_->fix(measured);
+  const auto squares = [&] {
+    return update_pose(PoseEstimate{state_.pose(), state_.covariance()}, measured).squares;
+  };
+  FixGate& gate = rows == 2 ? gnss_ : heading_;
+  if (!gate.pass(squares(), rows)) return false;
+  for (int i = 0; gate.was_forced() && i < 40 && squares() > 4; ++i)
+    state_.predict({{}, state_.covariance().diagonal().asDiagonal()});
+  state_.update(innovation(state_.pose(), measured));
+  return true;
+}
+template bool EkfSlam::apply_fix(const GnssFix&, int);
+template bool EkfSlam::apply_fix(const HeadingFix&, int);
+
 // Makes the landmarks active that the sensor may see before `margin` metres are driven.
 void EkfSlam::focus() {
   focused_ = reach() + options_.margin;

@@ -42,6 +42,10 @@ class EkfSlam final : public Localizer {
           LineOfSight visible = {});
   void predict(const BodyMotion& motion) override;
   std::vector<Match> update(const SightingSet& seen) override;
+  /// Updates pose and landmarks by a fix. After ten rejections in a row the deviation of the pose grows until
+  /// the fix is within two standard deviations.
+  bool fix(const GnssFix& gnss) override { return apply_fix(gnss, 2); }
+  bool fix(const HeadingFix& heading) override { return apply_fix(heading, 1); }
   LocalizationStatus status() const override;
 
   /// Enables relocalization (SlamRelocalization). A pose that the finder proposes, or the sum of Gaussians if
@@ -80,6 +84,8 @@ class EkfSlam final : public Localizer {
   static double position_sd(const PoseEstimate& e) {
     return std::sqrt(e.covariance(0, 0) + e.covariance(1, 1));
   }
+  template <class Fix>
+  bool apply_fix(const Fix& measured, int rows);
   void apply_pending_motion();
   void focus();
   double reach() const;
@@ -115,6 +121,7 @@ class EkfSlam final : public Localizer {
 
   SlamOptions options_;
   SlamState state_;
+  FixGate gnss_, heading_;
   BodyMotion pending_;  ///< motion since the last sightings
   FeatureScales scales_;
   LineOfSight visible_;

@@ -140,6 +140,19 @@ void SlamState::update(std::span<const Correction> corrections) {
     s.middleRows<2>(k) += c.by_pose * ph.topRows<3>() + c.by_landmark * ph.middleRows<2>(row(c.slot));
     if (c.deviation) s.middleRows<2>(k) += c.by_deviation * ph.middleRows<2>(row(*c.deviation));
   }
+  correct(ph, h_phi, s, v);
+}
+
+void SlamState::update(const FixInnovation& fix) {
+  const Eigen::MatrixXd ph = paa_.leftCols<3>() * fix.by_pose.transpose();
+  correct(ph, fix.by_pose * phi_.topRows<3>(), fix.by_pose * ph.topRows<3>() + fix.noise, fix.value);
+}
+
+// Applies a measurement: covariance of the state with it, its rows of phi, and the covariance of the
+// innovation.
+void SlamState::correct(const Eigen::MatrixXd& ph, const Eigen::MatrixXd& h_phi, const Eigen::MatrixXd& s,
+                        const Eigen::VectorXd& v) {
+  const bool has_passive = pbb_.rows() > 0;
   const Cholesky root((s + s.transpose()) / 2);
   if (!root.positive_definite()) return;  // not positive definite: skip the update
   const Eigen::MatrixXd gain = root.solve(Eigen::MatrixXd(ph.transpose())).transpose();

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <vector>
+#include "localization/absolute_fix.hpp"
 #include "localization/body_motion.hpp"
 namespace waymark::localization {
 
@@ -48,6 +49,8 @@ class SlamState {
   double joint_squares(std::span<const Correction> corrections) const;
   /// Updates by all corrections at once, Joseph form.
   void update(std::span<const Correction> corrections);
+  /// Updates by a measurement of the pose alone, Joseph form.
+  void update(const FixInnovation& fix);
 
   /// Adds an active landmark measured from the robot. `by_pose`: its Jacobian with respect to the pose;
   /// `own`: the rest of its covariance.
@@ -74,6 +77,8 @@ class SlamState {
   Eigen::Matrix<double, Rows, 2> with_innovation(Eigen::Index first_row, const Correction& of) const;
   Eigen::Index row(Slot slot) const { return 3 + 2 * static_cast<Eigen::Index>(index_[slot]); }
   Slot append(const Eigen::Vector2d& at);
+  void correct(const Eigen::MatrixXd& ph, const Eigen::MatrixXd& h_phi, const Eigen::MatrixXd& s,
+               const Eigen::VectorXd& innovation);
   void add_column(Slot slot);
   Eigen::MatrixXd measured_rows() const;
 

@@ -283,7 +283,7 @@ TEST_F(Localize, GnssAndCompassHelpWhereNothingIsSeen) {
       return line + "\n" + (step % 20 == 7 ? wild : gnss).dump() + "\n" + compass.dump();
     }});
   };
-  for (const std::string method : {"ekf", "ukf", "pf"}) {
+  for (const std::string method : {"ekf", "ukf", "pf", "slam"}) {
     ASSERT_EQ(localize(blind(false), {"--method", method, "--start", "truth"}).code, 0);
     const double without = score()["ate_rmse"];
     const Outcome said = localize(blind(true), {"--method", method, "--start", "truth"});

@@ -435,6 +435,28 @@ TEST(EkfSlam, RangesCorrectByLandmarksOfTheMapAndStartNone) {
   EXPECT_LT(sum / rows, 1.6);
 }
 
+// Fixes correct the landmarks as well: what was mapped with a wrong pose moves with it.
+TEST(EkfSlam, FixesCorrectPoseAndLandmarks) {
+  EkfSlam slam({{2, 0, 0}, Eigen::Vector3d(4, 4, 1e-6).asDiagonal()}, made_drive_options());
+  slam.update({{}, {seen_at(5, 0)}});
+  ASSERT_EQ(slam.landmarks().size(), 1u);
+  EXPECT_NEAR(slam.landmarks()[0].at.x(), 7, 1e-9);
+  EXPECT_TRUE(slam.fix(GnssFix{{0, 0}, 0.1}));
+  EXPECT_NEAR(slam.estimate().pose.x, 0, 0.01);
+  EXPECT_NEAR(slam.landmarks()[0].at.x(), 5, 0.01);
+  EXPECT_LT(slam.landmarks()[0].covariance(0, 0), 0.03);
+}
+
+TEST(EkfSlam, AWildFixIsRefusedAndManyThatAgreeAreBelieved) {
+  EkfSlam slam(known_pose({}), made_drive_options());
+  for (int i = 0; i < 9; ++i) EXPECT_FALSE(slam.fix(GnssFix{{500, 0}, 1})) << i;
+  EXPECT_NEAR(slam.estimate().pose.x, 0, 1e-3);
+  EXPECT_TRUE(slam.fix(GnssFix{{500, 0}, 1}));
+  EXPECT_NEAR(slam.estimate().pose.x, 500, 10);
+  EXPECT_TRUE(slam.estimate().covariance.allFinite());
+  EXPECT_TRUE(slam.fix(HeadingFix{slam.estimate().pose.yaw + 0.1, 0.05}));
+}
+
 TEST(EkfSlam, NonsenseIsRefusedAndLeavesItAlone) {
   EkfSlam slam(known_pose({}), made_drive_options());
   SeenLandmark bad;

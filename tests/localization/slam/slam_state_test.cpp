@@ -76,6 +76,16 @@ struct FullFilter {
       r.block<2, 2>(k, k) = c.noise;
       v.segment<2>(k) = c.innovation;
     }
+    correct(h, r, v);
+  }
+
+  void update(const FixInnovation& fix) {
+    Eigen::MatrixXd h = Eigen::MatrixXd::Zero(fix.value.size(), p.rows());
+    h.leftCols<3>() = fix.by_pose;
+    correct(h, fix.noise, fix.value);
+  }
+
+  void correct(const Eigen::MatrixXd& h, const Eigen::MatrixXd& r, const Eigen::VectorXd& v) {
     const Eigen::MatrixXd gain = p * h.transpose() * (h * p * h.transpose() + r).inverse();
     const Eigen::VectorXd step = gain * v;
     pose = pose_of(pose.vector() + step.head<3>());
@@ -96,8 +106,8 @@ void expect_equal(const SlamState& state, const FullFilter& twin, std::uint64_t 
   EXPECT_LT((state.pose().vector() - twin.pose.vector()).norm(), 1e-9 * scale) << "seed " << seed;
 }
 
-// Landmarks come, are measured, once or twice in a set, leave and return at random; new ones may lie
-// anywhere. More passive ones than a block of columns holds.
+// Landmarks come, are measured, once or twice in a set, leave and return at random; fixes come between; new
+// landmarks may lie anywhere. More passive ones than a block of columns holds.
 TEST(SlamState, IsTheFullFilterForAnySequenceOfCalls) {
   for (std::uint64_t seed = 1; seed <= 15; ++seed) {
     Random random(seed, "slam state");
@@ -130,6 +140,13 @@ TEST(SlamState, IsTheFullFilterForAnySequenceOfCalls) {
         const Slot gone = active[random.uniform_index(active.size())];
         state.remove(gone), twin.remove(gone);
         continue;
+      }
+      if (random.bernoulli(0.2)) {
+        const FixInnovation fix =
+            random.bernoulli(0.5)
+                ? innovation(state.pose(), GnssFix{state.pose().at() + Eigen::Vector2d(0.1, -0.2), 0.5})
+                : innovation(state.pose(), HeadingFix{state.pose().yaw + 0.01, 0.02});
+        state.update(fix), twin.update(fix);
       }
       std::vector<SlamState::Correction> corrections;
       for (const Slot slot : active)
