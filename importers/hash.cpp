@@ -6,6 +6,7 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <set>
 
@@ -46,15 +47,10 @@ std::vector<std::string> parts_of(const std::string& path) {
   }
 }
 
-// /dev/zero has no end; /dev/stdin is read from its copy.
-bool is_device(const std::string& path) {
-  VSIStatBufL status;
-  return VSIStatL(path.c_str(), &status) == 0 && S_ISCHR(status.st_mode);
-}
-
-// A device adds nothing: its reader refuses it.
+// A device adds nothing: its reader refuses it. /dev/stdin is read from its copy.
 std::uint64_t add_content(const std::string& path, pipeline::Sha256& sum) {
-  if (is_device(seekable_path(path))) return 0;
+  std::error_code unknown;
+  if (std::filesystem::is_character_file(seekable_path(path), unknown)) return 0;
   const GdalListener gdal;
   const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(seekable_path(path).c_str(), "rb"));
   if (!file) {

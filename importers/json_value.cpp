@@ -4,15 +4,16 @@
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "core/error.hpp"
 #include "core/json_text.hpp"
+#include "core/text_file.hpp"
 #include "importers/gdal_session.hpp"
 
 namespace waymark::importers {
@@ -169,14 +170,9 @@ std::string read_vsi_head(const std::string& path, std::size_t bytes) {
 }
 
 std::string read_vsi_text(const std::string& path) {
-  constexpr std::size_t kMaxDeviceBytes = 1 << 20;  // /dev/zero has no end
-  VSIStatBufL status;
-  if (VSIStatL(path.c_str(), &status) != 0 || !S_ISCHR(status.st_mode))
-    return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
-  std::string content = read_vsi_head(path, kMaxDeviceBytes + 1);
-  if (content.size() > kMaxDeviceBytes)
-    throw Error(ErrorCode::input, "the file cannot be read: the device does not end", path, "check the path");
-  return content;
+  std::error_code unknown;
+  if (std::filesystem::is_character_file(path, unknown)) return read_text(path, "the file");
+  return read_vsi_head(path, std::numeric_limits<std::size_t>::max() / 4);
 }
 
 }  // namespace waymark::importers

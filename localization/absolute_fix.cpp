@@ -12,10 +12,10 @@ namespace waymark::localization {
 namespace {
 
 template <int Rows>
-FixUpdate linear_update(const PoseEstimate& e, const Eigen::Matrix<double, Rows, 3>& h,
-                        const Eigen::Matrix<double, Rows, 1>& v, const Eigen::Matrix<double, Rows, Rows>& r) {
+FixUpdate linear_update(const PoseEstimate& e, const FixInnovation<Rows>& fix) {
   using Square = Eigen::Matrix<double, Rows, Rows>;
   const Eigen::Matrix3d& p = e.covariance;
+  const auto& [v, h, r] = fix;
   const Square s = h * p * h.transpose() + r;
   const Square inverse = s.inverse();
   const Eigen::Matrix<double, 3, Rows> gain = p * h.transpose() * inverse;
@@ -34,24 +34,21 @@ GnssFix fix_of_covariance(const Eigen::Vector2d& at, const Eigen::Matrix2d& cova
   return {at, std::sqrt(largest), covariance};
 }
 
-FixInnovation innovation(const Pose2& pose, const GnssFix& fix) {
+FixInnovation<2> innovation(const Pose2& pose, const GnssFix& fix) {
   return {fix.at - pose.at(), Eigen::Matrix<double, 2, 3>::Identity(), fix.noise()};
 }
 
-FixInnovation innovation(const Pose2& pose, const HeadingFix& fix) {
+FixInnovation<1> innovation(const Pose2& pose, const HeadingFix& fix) {
   return {Eigen::Matrix<double, 1, 1>(wrap_angle(fix.yaw - pose.yaw)), Eigen::RowVector3d(0, 0, 1),
           Eigen::Matrix<double, 1, 1>(fix.sd * fix.sd)};
 }
 
 FixUpdate update_pose(const PoseEstimate& estimate, const GnssFix& fix) {
-  Eigen::Matrix<double, 2, 3> h = Eigen::Matrix<double, 2, 3>::Zero();
-  h(0, 0) = h(1, 1) = 1;
-  return linear_update<2>(estimate, h, fix.at - estimate.pose.at(), fix.noise());
+  return linear_update(estimate, innovation(estimate.pose, fix));
 }
 
 FixUpdate update_pose(const PoseEstimate& estimate, const HeadingFix& fix) {
-  const Eigen::Matrix<double, 1, 1> v(wrap_angle(fix.yaw - estimate.pose.yaw));
-  return linear_update<1>(estimate, {0, 0, 1}, v, Eigen::Matrix<double, 1, 1>(fix.sd * fix.sd));
+  return linear_update(estimate, innovation(estimate.pose, fix));
 }
 
 bool FixGate::pass(double squares, int rows) {

@@ -23,14 +23,15 @@ struct HeadingFix {
   double yaw = 0, sd = 0.1;  ///< rad
 };
 
-/// What a fix of n numbers says of a pose.
+/// What a fix of some numbers says of a pose.
+template <int Rows>
 struct FixInnovation {
-  Eigen::VectorXd value;  ///< n: measured less estimated; m, rad
-  Eigen::Matrix<double, Eigen::Dynamic, 3> by_pose;
-  Eigen::MatrixXd noise;  ///< n x n
+  Eigen::Matrix<double, Rows, 1> value;  ///< measured less estimated; m, rad
+  Eigen::Matrix<double, Rows, 3> by_pose;
+  Eigen::Matrix<double, Rows, Rows> noise;
 };
-FixInnovation innovation(const Pose2& pose, const GnssFix& fix);
-FixInnovation innovation(const Pose2& pose, const HeadingFix& fix);
+FixInnovation<2> innovation(const Pose2& pose, const GnssFix& fix);
+FixInnovation<1> innovation(const Pose2& pose, const HeadingFix& fix);
 
 /// Result of a Kalman update by a fix.
 struct FixUpdate {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "localization/detectors/cloud_columns.hpp"
 #include "localization/detectors/cloud_ground.hpp"
 #include "localization/detectors/upright_shape.hpp"
 

@@ -5,9 +5,11 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <numeric>
-#include <utility>
 #include <vector>
+
+#include "core/median.hpp"
 
 namespace waymark::localization {
 namespace {
@@ -24,10 +26,6 @@ constexpr double kStemSd = 0.05;     // m of that radius
 constexpr double kMinPlate = 0.15;   // m, half of its width
 constexpr double kSurelyFlat = 4.6;  // logarithm of the ratio of likelihoods, 100
 constexpr double kWider = 1.5;       // of the narrow layers: what is wider shows something else
-constexpr float kRow = 0.001F;       // rad between points of a row, in elevation
-constexpr float kMaxSlope = 2;
-constexpr int kSampledRows = 8;    // one of so many is looked at
-constexpr float kMaxStep = 0.03F;  // rad: what is farther apart are no neighbours
 
 struct Circle {
   Eigen::Vector2d centre;
@@ -35,12 +33,6 @@ struct Circle {
 };
 
 using Points = std::vector<Eigen::Vector2d>;
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 Eigen::Vector2d mean(const Points& points) {
   Eigen::Vector2d sum = Eigen::Vector2d::Zero();
@@ -126,11 +118,12 @@ bool is_circle(const Circle& arc, const Points& points, double max_diameter) {
          squares < mean_square_of_line(points);
 }
 
+// Returns whether points lie on a plane rather than on a circle.
 bool is_plate(const Circle& circle, const Points& points) {
-  const double line = mean_square_of_line(points), noise = kRangeSd * kRangeSd;
-  return circle.radius > kMinPlate &&
-         line<noise&& static_cast<double>(points.size()) * (mean_square(points, circle) - line)> 2 * noise *
-             kSurelyFlat;
+  const double of_line = mean_square_of_line(points), of_circle = mean_square(points, circle);
+  const double noise = kRangeSd * kRangeSd, count = static_cast<double>(points.size());
+  const double log_ratio = count * (of_circle - of_line) / (2 * noise);
+  return circle.radius > kMinPlate && of_line < noise && log_ratio > kSurelyFlat;
 }
 
 // What a pole hides: the points of its narrow layers, and the angle that they fill.
@@ -180,9 +173,11 @@ Silhouette narrow_layers(std::span<const RaisedPoint> points, const Eigen::Vecto
 Circle circle_within(const Silhouette& pole, double step) {
   const Eigen::Vector2d middle = mean(pole.points), along = middle.normalized();
   const double depth = middle.norm(), quantum = depth * step;
-  // radius = (depth + pi / 4 * radius) * sin(width / 2)
-  const double sine = std::sin(std::min(pole.width / 2, 1.0)), seen = depth * sine / (1 - 0.785 * sine);
-  const double seen_variance = quantum * quantum / 24 + 1e-8,
+  // radius = (depth + pi / 4 * radius) * sin(width / 2): the mean depth of an arc
+  constexpr double kMeanDepth = std::numbers::pi / 4;  // radii before the axis
+  const double sine = std::sin(std::min(pole.width / 2, 1.0)), seen = depth * sine / (1 - kMeanDepth * sine);
+  constexpr double kExact = 1e-8;  // m2: no width is known better
+  const double seen_variance = quantum * quantum / 24 + kExact,
                usual_variance = kUsualRadiusSd * kUsualRadiusSd;
   Circle circle;
   circle.radius_variance = seen_variance * usual_variance / (usual_variance + seen_variance);
@@ -192,28 +187,11 @@ Circle circle_within(const Silhouette& pole, double step) {
     const double off = along.x() * p.y() - along.y() * p.x();
     depths.push_back(along.dot(p) + std::sqrt(std::max(0.0, circle.radius * circle.radius - off * off)));
   }
-  circle.centre = median(depths) * along;
+  circle.centre = median(std::move(depths)) * along;
   return circle;
 }
 
 }  // namespace
-
-double column_step(const PointCloud& cloud) {
-  std::vector<std::pair<int, float>> sampled;  // row and azimuth
-  for (const Eigen::Vector3f& p : cloud.points) {
-    const float slope = p.z() / p.head<2>().norm();
-    if (!(std::abs(slope) < kMaxSlope)) continue;
-    const int row = static_cast<int>(std::floor(slope / kRow));
-    if (row % kSampledRows == 0) sampled.emplace_back(row, std::atan2(p.y(), p.x()));
-  }
-  std::ranges::sort(sampled);
-  std::vector<double> steps;
-  for (std::size_t i = 1; i < sampled.size(); ++i)
-    if (const float step = sampled[i].second - sampled[i - 1].second;
-        sampled[i].first == sampled[i - 1].first && step < kMaxStep)
-      steps.push_back(static_cast<double>(step));
-  return steps.empty() ? 0 : median(steps);
-}
 
 std::optional<UprightShape> fit_upright(std::span<const RaisedPoint> points, double step,
                                         double max_diameter) {

@@ -18,14 +18,10 @@ struct UprightShape {
   double diameter = 0, diameter_sd = 0;
 };
 
-/// Returns the angle between columns of a 3-D scan, radians: the median between neighbours of a row. 0 if
-/// the points are in no rows, as after a rotation. Looks at an eighth of the rows.
-double column_step(const PointCloud& cloud);
-
 /// Fits a circle to the points of a pole as the scanner sees it.
 /// - The diameter follows from the angle that each layer of 0.25 m fills, not from the depth of the arc:
-/// noise
-///   of the ranges is as large as that depth. Of the layers the median counts: a sign on a post is wider.
+///   noise of the ranges is as large as that depth. Of the layers the narrow ones count: a sign on a post is
+///   wider.
 /// - The axis lies behind the points by the depth of the circle there.
 /// - Narrow poles far away are one column wide: the diameter is then near that of usual poles, 0.2 m.
 /// `step`: angle between columns, radians. `std::nullopt` if the points are no circle or it is wider than

@@ -143,10 +143,13 @@ void SlamState::update(std::span<const Correction> corrections) {
   correct(ph, h_phi, s, v);
 }
 
-void SlamState::update(const FixInnovation& fix) {
+template <int Rows>
+void SlamState::update(const FixInnovation<Rows>& fix) {
   const Eigen::MatrixXd ph = paa_.leftCols<3>() * fix.by_pose.transpose();
   correct(ph, fix.by_pose * phi_.topRows<3>(), fix.by_pose * ph.topRows<3>() + fix.noise, fix.value);
 }
+template void SlamState::update(const FixInnovation<1>&);
+template void SlamState::update(const FixInnovation<2>&);
 
 // Applies a measurement: covariance of the state with it, its rows of phi, and the covariance of the
 // innovation.

@@ -50,7 +50,8 @@ class SlamState {
   /// Updates by all corrections at once, Joseph form.
   void update(std::span<const Correction> corrections);
   /// Updates by a measurement of the pose alone, Joseph form.
-  void update(const FixInnovation& fix);
+  template <int Rows>
+  void update(const FixInnovation<Rows>& fix);
 
   /// Adds an active landmark measured from the robot. `by_pose`: its Jacobian with respect to the pose;
   /// `own`: the rest of its covariance.

@@ -15,7 +15,7 @@ TEST(VsiText, OfADeviceWithoutEndIsRefused) {
     ADD_FAILURE();
   } catch (const Error& error) {
     EXPECT_EQ(error.code(), ErrorCode::input);
-    EXPECT_EQ(error.problem(), "the file cannot be read: the device does not end");
+    EXPECT_EQ(error.problem(), "cannot read the file: the device does not end");
     EXPECT_EQ(error.where(), "/dev/zero");
   }
 }

@@ -190,18 +190,21 @@ SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& 
       .play = task.settings.play,
       .start = task.start.value_or(localization::PoseEstimate{{}, Eigen::Matrix3d::Identity() * 1e-9})};
   setup.options.identification = task.settings.identification;
+  return setup;
+}
+
+void leave_out_fixes_without_start(const LocalizeTask& task, localization::ReplayOptions& play) {
+  if (task.start || !play.use_fixes) return;
   const auto fixes = std::ranges::count_if(task.log.events, [](const localization::LogEvent& event) {
     return std::holds_alternative<localization::GnssFix>(event.what) ||
            std::holds_alternative<localization::HeadingFix>(event.what);
   });
-  if (!task.start && fixes > 0 && setup.play.use_fixes) {
-    setup.play.use_fixes = false;  // the frame of the map is not that of the fixes
-    task.callbacks.warning(fmt::format(
-        "{} GNSS and compass readings are not used: it is not known where the map that begins here "
-        "lies; give --start X,Y,YAW: {}",
-        fixes, task.log_file));
-  }
-  return setup;
+  if (fixes == 0) return;
+  play.use_fixes = false;
+  task.callbacks.warning(fmt::format(
+      "{} GNSS and compass readings are not used: it is not known where the map that begins here lies; give "
+      "--start X,Y,YAW: {}",
+      fixes, task.log_file));
 }
 
 localization::Track run_slam(const LocalizeTask& task, const SlamSetup& setup,

@@ -33,6 +33,10 @@ struct SlamSetup {
 /// Throws Error{usage} if the map has landmarks and the start is unknown.
 SlamSetup slam_setup(const LocalizeTask& task, const localization::SlamOptions& options);
 
+/// Leaves out the fixes of a log, and warns, if the start is unknown: the frame of the map that begins here
+/// is then not that of the fixes.
+void leave_out_fixes_without_start(const LocalizeTask& task, localization::ReplayOptions& play);
+
 inline constexpr double kSlamRadius = 5000;  ///< m around the start, in a map too large to be read at once
 
 /// Returns the detectors for the laser scans of a log where the map has no landmarks that decide: those of

@@ -20,6 +20,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 /// A drive round a ring of rocks, `rounds` times, as a log; `hidden`: a rock that is gone.
 std::string drive(double rounds, int hidden = -1) {
@@ -94,6 +95,27 @@ TEST_F(SlamCommand, MakesAMapFromNothingAndFollowsTheRobot) {
   const Outcome score = waymark(
       {"evaluate", "track", folder_ / "track.csv", "--truth", folder_ / "drive.jsonl", "--format", "json"});
   EXPECT_LT(nlohmann::json::parse(score.out).at("ate_rmse").get<double>(), 0.4) << score.out;
+}
+
+TEST_F(SlamCommand, FromNothingUsesFixesOnlyWithAStart) {
+  std::istringstream lines(drive(1));
+  std::string text;
+  for (std::string line; std::getline(lines, line);) {
+    text += line + "\n";
+    nlohmann::json fix = nlohmann::json::parse(line);
+    if (fix["kind"] != "truth") continue;
+    fix["kind"] = "gnss", fix["sd"] = 0.3;
+    text += fix.dump() + "\n";
+  }
+  write_text(folder_ / "drive.jsonl", text);
+  const Outcome unknown = localize("none", {});
+  ASSERT_EQ(unknown.code, 0) << unknown.err;
+  EXPECT_THAT(unknown.err, HasSubstr("64 GNSS and compass readings are not used"));
+  const Outcome known = localize("none", {"--start", "10,0,1.5708"});
+  EXPECT_THAT(known.err, HasSubstr("GNSS and compass readings: 64, 0 of them not used"));
+  const Outcome graph = localize("none", {}, "graph");
+  ASSERT_EQ(graph.code, 0) << graph.err;
+  EXPECT_THAT(graph.err, Not(HasSubstr("give --start")));
 }
 
 TEST_F(SlamCommand, TheRunRecordsEverySetting) {

@@ -79,7 +79,8 @@ struct FullFilter {
     correct(h, r, v);
   }
 
-  void update(const FixInnovation& fix) {
+  template <int Rows>
+  void update(const FixInnovation<Rows>& fix) {
     Eigen::MatrixXd h = Eigen::MatrixXd::Zero(fix.value.size(), p.rows());
     h.leftCols<3>() = fix.by_pose;
     correct(h, fix.noise, fix.value);
@@ -142,11 +143,12 @@ TEST(SlamState, IsTheFullFilterForAnySequenceOfCalls) {
         continue;
       }
       if (random.bernoulli(0.2)) {
-        const FixInnovation fix =
-            random.bernoulli(0.5)
-                ? innovation(state.pose(), GnssFix{state.pose().at() + Eigen::Vector2d(0.1, -0.2), 0.5})
-                : innovation(state.pose(), HeadingFix{state.pose().yaw + 0.01, 0.02});
-        state.update(fix), twin.update(fix);
+        const Pose2 pose = state.pose();
+        const auto update = [&](const auto& fix) { state.update(fix), twin.update(fix); };
+        if (random.bernoulli(0.5))
+          update(innovation(pose, GnssFix{pose.at() + Eigen::Vector2d(0.1, -0.2), 0.5}));
+        else
+          update(innovation(pose, HeadingFix{pose.yaw + 0.01, 0.02}));
       }
       std::vector<SlamState::Correction> corrections;
       for (const Slot slot : active)

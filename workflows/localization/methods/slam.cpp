@@ -25,7 +25,8 @@ class Slam final : public LocalizeMethod {
   }
 
   localization::Track run(LocalizeTask& task) override {
-    const SlamSetup setup = slam_setup(task, options_);
+    SlamSetup setup = slam_setup(task, options_);
+    leave_out_fixes_without_start(task, setup.play);
     localization::EkfSlam slam(
         setup.start, task.map.window.landmarks_near(setup.start.pose.at(), kSlamRadius),
         localization::FeatureScales(task.map.map.types()), setup.options, line_of_sight(task));
