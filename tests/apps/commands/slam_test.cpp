@@ -108,12 +108,12 @@ TEST_F(SlamCommand, FromNothingUsesFixesOnlyWithAStart) {
     text += fix.dump() + "\n";
   }
   write_text(folder_ / "drive.jsonl", text);
-  const Outcome unknown = localize("none", {});
+  const Outcome unknown = localize("none", {"--start", "none"});
   ASSERT_EQ(unknown.code, 0) << unknown.err;
   EXPECT_THAT(unknown.err, HasSubstr("64 GNSS and compass readings are not used"));
   const Outcome known = localize("none", {"--start", "10,0,1.5708"});
   EXPECT_THAT(known.err, HasSubstr("GNSS and compass readings: 64, 0 of them not used"));
-  const Outcome graph = localize("none", {}, "graph");
+  const Outcome graph = localize("none", {"--start", "none"}, "graph");
   ASSERT_EQ(graph.code, 0) << graph.err;
   EXPECT_THAT(graph.err, Not(HasSubstr("give --start")));
 }
