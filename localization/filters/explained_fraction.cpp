@@ -31,7 +31,7 @@ ChanceFraction make_chance_fraction(LandmarkMatcher matcher) {
   return [calls, matcher = std::make_shared<LandmarkMatcher>(std::move(matcher))](
              const SightingSet& seen, const PoseEstimate& at, std::span<const Match> matches) {
     matcher->observe(seen);
-    matcher->learn(matches, seen, at.pose, matcher->landmarks_near(seen, at));
+    matcher->learn(matches, seen, at, matcher->landmarks_near(seen, at));
     double reach = 0;
     for (const SeenLandmark& s : seen.sightings)
       if (s.is_valid() && s.range) reach = std::max(reach, *s.range + 6 * s.range_sd);

@@ -33,7 +33,7 @@ std::vector<Match> KalmanLocalizer::update(const SightingSet& seen) {
   matcher_.observe(seen);
   const LandmarkGrid& map = matcher_.landmarks_near(seen, before);
   auto [matches, posterior] = matcher_.identify(seen, before, map);
-  matcher_.learn(matches, seen, before.pose, map);
+  matcher_.learn(matches, seen, before, map);
   std::vector<MatchedSighting> uses;
   bool doubtful = false, strange = false;
   // Ranges to landmarks that identify themselves compete with echoes alone: each is associated by itself.

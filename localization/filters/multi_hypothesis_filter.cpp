@@ -249,7 +249,7 @@ std::vector<Match> MultiHypothesisFilter::update(const SightingSet& seen) {
                                            landmark.covariance, noise_divisor(landmark, identification));
     }
   }
-  matcher_.learn(matches, seen, before.pose, map);
+  matcher_.learn(matches, seen, before, map);
   // Merges hypotheses of one pose, whatever their associations.
   for (Component& component : components_) component.choice.clear();
   prune();

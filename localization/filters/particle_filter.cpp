@@ -217,7 +217,7 @@ std::vector<Match> ParticleFilter::update(const SightingSet& seen) {
     resample_particles(seen, map);
 
   std::vector<Match> matches = matcher_.identify(seen, summary_, map).matches;
-  if (!searching_) matcher_.learn(matches, seen, summary_.pose, map);
+  if (!searching_) matcher_.learn(matches, seen, summary_, map);
   follow_sightings(before, seen, matches, map);
   for (Match& match : matches) {
     if (match.verdict == Verdict::matched) {

@@ -53,6 +53,9 @@ struct IdentificationOptions {
   /// Leave out landmarks that others outweigh. SLAM uses them: it decides itself what exists. No option
   bool leave_out_outweighed = true;
 
+  /// Factor, by type, of the existence of doubtful landmarks (DoubtCalibration). No option
+  std::vector<double> doubt_factors = {};
+
   void describe(OptionVisitor& option);
   /// Returns the association that `auto` stands for, otherwise the given one.
   std::string_view chosen_association() const;
@@ -155,9 +158,12 @@ inline double noise_divisor(const MapLandmark& landmark, const IdentificationOpt
   return options.quality == "paper" ? std::max(landmark.paper_quality, options.quality_floor) : 1;
 }
 
-/// Returns the prior probability of a landmark's pairings: that it exists; 1 unless `quality=existence`.
+/// Returns the prior probability of a landmark's pairings: that it exists, of a doubtful one times the factor
+/// that the drive taught; 1 unless `quality=existence`.
 inline double existence_prior(const MapLandmark& landmark, const IdentificationOptions& options) {
-  return options.quality == "existence" && options.quality_floor < 1 ? landmark.quality : 1;
+  if (options.quality != "existence" || options.quality_floor >= 1) return 1;
+  const bool is_corrected = landmark.type < options.doubt_factors.size() && landmark.is_doubtful();
+  return landmark.quality * (is_corrected ? options.doubt_factors[landmark.type] : 1);
 }
 
 /// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it;

@@ -50,7 +50,7 @@ LandmarkGrid::LandmarkGrid(std::vector<MapLandmark> landmarks, double cell) {
 void LandmarkGrid::mark_outweighed() {
   for (MapLandmark& l : landmarks_) {
     l.outweighed = false;
-    if (l.quality >= kLikelyExistence || !l.has_confidence || l.is_line()) continue;
+    if (!l.is_doubtful()) continue;
     double likely = 0, doubtful = 0;
     near(l.at, kOutweighedRadius, [&](std::uint32_t i) {
       const MapLandmark& other = landmarks_[i];

@@ -75,6 +75,7 @@ void LandmarkMatcher::set_clutter() {
 
 void LandmarkMatcher::observe(const SightingSet& seen) {
   clutter_.add_sightings(seen);
+  options_.doubt_factors = doubt_->factors();
   set_clutter();
 }
 
@@ -99,8 +100,28 @@ double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& 
   return count;
 }
 
-void LandmarkMatcher::learn(std::span<const Match> matches, const SightingSet& seen, const Pose2& robot,
-                            const LandmarkGrid& map) {
+// Learns where a landmark that likely exists supports the pose: doubtful ones alone may be matched at a wrong
+// one. Sightings with identities say which landmark they show, whatever its confidence.
+void LandmarkMatcher::learn_doubt(std::span<const Match> matches, const SightingSet& seen,
+                                  const PoseEstimate& robot, const LandmarkGrid& map) {
+  std::vector<LandmarkKey> shown;
+  bool is_supported = false;
+  for (std::size_t k = 0; k < matches.size(); ++k) {
+    if (options_.use_identities && seen.sightings[k].identity) return;
+    const bool is_matched = matches[k].verdict == Verdict::matched;
+    shown.push_back(is_matched ? map[matches[k].pairing.landmark].key : 0);
+    is_supported = is_supported || (is_matched && !map[matches[k].pairing.landmark].is_doubtful());
+  }
+  if (!is_supported) return;
+  doubt_->add(seen, shown, robot, map,
+              {.range = clutter_.view_range(),
+               .bearing = clutter_.view_bearing(),
+               .detection = clutter_.detection(),
+               .clutter = clutter_.density(options_.clutter_reach())});
+}
+
+void LandmarkMatcher::learn(std::span<const Match> matches, const SightingSet& seen,
+                            const PoseEstimate& robot, const LandmarkGrid& map) {
   if (matches.size() != seen.sightings.size()) return;
   double unmapped = 0, count = 0;
   for (const Match& m : matches) {
@@ -109,7 +130,8 @@ void LandmarkMatcher::learn(std::span<const Match> matches, const SightingSet& s
     ++count;
   }
   clutter_.add_unmapped(unmapped, count);
-  clutter_.add_in_view(landmarks_in_view(seen, robot, map));
+  clutter_.add_in_view(landmarks_in_view(seen, robot.pose, map));
+  learn_doubt(matches, seen, robot, map);
   set_clutter();
 }
 

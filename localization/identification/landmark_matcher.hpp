@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <memory>
 #include <span>
 #include <vector>
+#include "localization/identification/doubt_calibration.hpp"
 #include "localization/identification/identification.hpp"
 #include "localization/identification/landmark_window.hpp"
 #include "localization/sighting.hpp"
@@ -40,7 +42,8 @@ class ClutterEstimate {
 };
 
 /// Matches sightings with the landmarks around a robot. Bundles the map, the scales of its features and the
-/// options of data association, which every filter needs. Copies are independent.
+/// options of data association, which every filter needs. Copies are independent but for what was learnt of
+/// doubtful landmarks: that is of the map, and a filter that restarts keeps it.
 class LandmarkMatcher {
  public:
   explicit LandmarkMatcher(LandmarkWindow map, FeatureScales scales = {}, IdentificationOptions options = {})
@@ -61,9 +64,9 @@ class LandmarkMatcher {
   /// Prepares for a set: estimates the density of sightings without landmark (`learn_clutter`).
   void observe(const SightingSet& seen);
   /// Learns from the matches of the set, made at a pose, the fraction of sightings that are not of the map.
-  /// Learns also what part of the landmarks in view is seen. `map`: from landmarks_near. Does nothing if they
-  /// are not the matches of the set.
-  void learn(std::span<const Match> matches, const SightingSet& seen, const Pose2& robot,
+  /// Learns also what part of the landmarks in view is seen, and how many of the doubtful ones exist. `map`:
+  /// from landmarks_near. Does nothing if they are not the matches of the set.
+  void learn(std::span<const Match> matches, const SightingSet& seen, const PoseEstimate& robot,
              const LandmarkGrid& map);
 
   /// Matches the sightings of a set; see waymark::identify. `map`: from landmarks_near.
@@ -77,17 +80,21 @@ class LandmarkMatcher {
   }
 
   const FeatureScales& scales() const { return scales_; }
-  /// Returns the options; `clutter` is the estimated density over the rate of detection.
+  /// Returns the options; `clutter` is the estimated density over the rate of detection, `doubt_factors` what
+  /// was learnt of doubtful landmarks.
   const IdentificationOptions& options() const { return options_; }
 
  private:
   void set_clutter();
+  void learn_doubt(std::span<const Match> matches, const SightingSet& seen, const PoseEstimate& robot,
+                   const LandmarkGrid& map);
   double landmarks_in_view(const SightingSet& seen, const Pose2& robot, const LandmarkGrid& map);
 
   LandmarkWindow map_;
   FeatureScales scales_;
   IdentificationOptions options_;
   ClutterEstimate clutter_;
+  std::shared_ptr<DoubtCalibration> doubt_ = std::make_shared<DoubtCalibration>();
   double min_clutter_;
   std::vector<TypeId> seen_types_;  // of any sighting so far
   bool any_type_ = false;           // a sighting had no type, so it may be of any

@@ -40,6 +40,9 @@ struct MapLandmark {
   double normal_variance = 0;  ///< rad^2
 
   bool is_line() const { return half_length > 0; }
+  /// Returns whether it rather does not exist by its map. Lines and landmarks without a confidence never
+  /// count as doubtful.
+  bool is_doubtful() const { return quality < kLikelyExistence && has_confidence && !is_line(); }
   /// Returns the unit vector along a line, to the left of its normal.
   Eigen::Vector2d along() const { return {-normal.y(), normal.x()}; }
 };

@@ -111,7 +111,7 @@ std::vector<std::optional<LandmarkKey>> EkfSlam::identify_in_map(const SightingS
   matcher_->observe(seen);
   const LandmarkGrid& map = matcher_->landmarks_near(seen, robot);
   std::vector<Match> own = matcher_->identify(seen, robot, map).matches;
-  matcher_->learn(own, seen, robot.pose, map);
+  matcher_->learn(own, seen, robot, map);
   for (Match& m : own)
     if (m.verdict == Verdict::matched) m.key = map[m.pairing.landmark].key;
   add(own);
