@@ -21,8 +21,11 @@ std::vector<Argument> track_arguments(workflows::TrackEvaluation& into,
           .one_of({"none", "se2", "sim2"})
           .or_else("none"),
       Argument{"--log-format", "FORMAT", &into.log_format.format, "track: format of a truth that is a log"}
-          .one_of({"waymark", "mrclam", "victoria-park"})
-          .or_else("recognised"),
+          .one_of({"waymark", "csv", "mrclam", "victoria-park", "carmen", "rosbag2", "mcap"})
+          .or_else("recognised; .csv and .tum are tracks"),
+      Argument{"--columns", "TARGET=EXPRESSION,...", &into.log_format.columns,
+               "track: what the columns of a truth in a CSV log are, e.g. "
+               "t=stamp/1000,truth_x=east,truth_y=north"},
       Argument{"--robot", "K", &into.log_format.robot,
                "track: which robot of an MRCLAM dataset is the truth"},
       Argument{"--picture", "FILE.svg", &into.picture, "track: draw truth, track and their errors"}.offering(
@@ -145,6 +148,7 @@ class Evaluate final : public Command {
         {is_track && !landmarks_.size_edges.empty(), "--size-edges"},
         {!is_track && track_.align != still.align, "--align"},
         {!is_track && !track_.log_format.format.empty(), "--log-format"},
+        {!is_track && !track_.log_format.columns.empty(), "--columns"},
         {!is_track && track_.log_format.robot != still.log_format.robot, "--robot"},
         {!is_track && !track_.picture.empty(), "--picture"},
         {!is_track && !track_.map.empty(), "--map"},

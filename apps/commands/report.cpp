@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/command.hpp"
 #include "apps/log.hpp"
+#include "core/error.hpp"
 #include "core/keep_inputs.hpp"
 #include "exporters/report/report_html.hpp"
 #include "workflows/evaluation/evaluate.hpp"
@@ -42,6 +45,9 @@ class Report final : public Command {
              Argument{"--aoi", "POLYGONS", &aoi_,
                       "Area of interest, in any CRS of the body: report the landmarks inside"}
                  .offering(Offer::file),
+             Argument{"--min-confidence", "P", &min_confidence_,
+                      "Report only landmarks that exist with at least this probability, 0 to 1"}
+                 .or_else("0"),
              Argument{"--title", "TEXT", &options_.title, "Title of the page"}.or_else("the file's name"),
              Argument{"--static", "", &static_, "Write the page without a script"},
              Argument{"--top", "N", &options_.top, "Landmarks listed per type"}.or_else("25"),
@@ -61,7 +67,10 @@ class Report final : public Command {
   int run(const Session&) override {
     options_.interactive = !static_;
     keep_inputs(html_, {map_, truth_, aoi_});
-    const workflows::MapOfArea map(map_, aoi_, html_);
+    if (!(min_confidence_ >= 0 && min_confidence_ <= 1))
+      throw Error(ErrorCode::usage, fmt::format("--min-confidence is {:g}", min_confidence_), "",
+                  "it is a probability: 0 to 1");
+    const workflows::MapOfArea map(map_, aoi_, html_, min_confidence_);
     for (const std::string& warning : map.warnings()) log_warning(warning);
     if (!truth_.empty()) options_.checks = workflows::check_quality(map.path(), truth_);
     exporters::write_report(map.path(), html_, options_);
@@ -84,6 +93,7 @@ class Report final : public Command {
 
   std::string format_ = "text";
   std::string map_, html_, truth_, aoi_;
+  double min_confidence_ = 0;
   bool static_ = false;
   exporters::ReportOptions options_;
 };

@@ -70,7 +70,7 @@ void check_metres(const localization::RobotLog& log, const std::string& file) {
 
 Truth read_truth(const TrackEvaluation& request, const LocalFrame* frame) {
   const std::string& file = request.truth;
-  if (file.ends_with(".csv") || file.ends_with(".tum")) {
+  if (request.log_format.format.empty() && (file.ends_with(".csv") || file.ends_with(".tum"))) {
     Truth truth;
     const exporters::TrackFile read =
         frame ? exporters::TrackFile{exporters::read_track(file, frame)} : exporters::read_track_file(file);

@@ -91,6 +91,23 @@ TEST_F(CsvLog, ATableGivesTheTrackOfItsRecords) {
   EXPECT_NEAR(last.at("yaw"), last_row().at("yaw"), 1e-5);
 }
 
+TEST_F(CsvLog, ATrackIsJudgedByItsTruth) {
+  const std::string log = plain_drive();
+  ASSERT_EQ(localize(log, {"--start", "truth", "--method", "odometry"}).code, 0);
+  write_text(folder_.path() / "truth.csv", as_csv(log, "stamp,v,omega,bearing,range,e,n,h"));
+  const auto score_by = [&](const std::string& truth, const std::vector<std::string>& more) {
+    std::vector<std::string> words{"evaluate", "track", track_, "--truth", truth, "--format", "json"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome said = waymark(words);
+    return said.code == 0 ? json::parse(said.out)["ate_rmse"].get<double>() : -1;
+  };
+  const double by_log = score_by(folder_ / "log.jsonl", {});
+  EXPECT_GT(by_log, 0);
+  EXPECT_NEAR(score_by(folder_ / "truth.csv",
+                       {"--log-format", "csv", "--columns", "t=stamp,truth_x=e,truth_y=n,truth_yaw=h"}),
+              by_log, 1e-6);
+}
+
 // Detectors of other programs write positions in the frame of the robot, each into a table with the odometry.
 TEST_F(CsvLog, SightingsMayBePositions) {
   const std::string head = "t,v,omega,";

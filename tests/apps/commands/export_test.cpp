@@ -53,5 +53,20 @@ TEST_F(ExportCommand, ABoundOfConfidenceIsRefusedWhereItDoesNotApply) {
   EXPECT_THAT(run("a.diam").err, HasSubstr("needs all craters"));
 }
 
+TEST_F(ExportCommand, AReportMayShowLikelyLandmarksOnly) {
+  const auto report = [&](const std::string& map, const char* html, const char* bound) {
+    return waymark({"report", map, "-o", folder_ / html, "--min-confidence", bound, "--title", "Rocks"});
+  };
+  ASSERT_EQ(report(map_, "bound.html", "0.5").code, 0);
+  EXPECT_THAT(text_of(folder_ / "bound.html"), AllOf(HasSubstr("sure"), Not(HasSubstr("maybe"))));
+  ASSERT_EQ(report(map_, "all.html", "0").code, 0);
+  EXPECT_THAT(text_of(folder_ / "all.html"), HasSubstr("maybe"));
+  EXPECT_EQ(report(map_, "no.html", "7").code, 2);
+  const Outcome none = report(map_, "no.html", "0.95");
+  EXPECT_EQ(none.code, 1);
+  EXPECT_THAT(none.err, HasSubstr("the map has no landmark of confidence 0.95 or more"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "no.html"));
+}
+
 }  // namespace
 }  // namespace waymark::test
