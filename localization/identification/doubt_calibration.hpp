@@ -12,7 +12,7 @@ namespace waymark::localization {
 ///
 /// Doubtful landmarks in view are expected with their confidence times the rate of detection. One counts as
 /// seen if a sighting that shows no other landmark is within the gate; what falls there by chance is
-/// subtracted. A pose that is too uncertain to tell the two apart teaches nothing.
+/// subtracted. A pose that is too uncertain to distinguish the two teaches nothing.
 class DoubtCalibration {
  public:
   /// What the sensor can see.
