@@ -148,9 +148,9 @@ Eigen::Matrix2d SightingScore::map_covariance(std::uint32_t landmark) const {
 
 double SightingScore::quality(std::uint32_t landmark) const {
   const MapLandmark& l = (*map_)[landmark];
-  return identification_.quality_floor < 1
-             ? (identification_.quality == "paper" ? l.paper_quality : l.quality)
-             : 1;
+  if (identification_.quality_floor >= 1) return 1;
+  if (identification_.quality == "paper") return l.paper_quality;
+  return paper_ ? l.quality : existence_prior(l, identification_);
 }
 
 bool SightingScore::is_left_out(std::uint32_t landmark) const {

@@ -12,12 +12,12 @@ namespace waymark::test {
 using namespace localization;
 namespace {
 
-constexpr double kQuality = 0.2, kRange = 15, kTurn = 1.5;
+constexpr double kDoubtful = 0.2, kViewRange = 15, kHalfView = 1.5;
 
 /// A map of doubtful landmarks of type 0, of which every `period`-th exists, seen from poses in its middle.
 class DoubtfulWorld {
  public:
-  DoubtfulWorld(int period, double confidence = kQuality) : period_(period) {
+  DoubtfulWorld(int period, double confidence = kDoubtful) : period_(period) {
     std::vector<MapLandmark> map = scatter_landmarks(900, 60, 3);
     for (MapLandmark& l : map) l.quality = confidence;
     map_ = LandmarkGrid(std::move(map));
@@ -41,14 +41,18 @@ class DoubtfulWorld {
 
  private:
   static DoubtCalibration::View view(double detection) {
-    return {.range = kRange, .bearing = kTurn, .detection = detection, .clutter = 0.5 / (2 * kTurn * kRange)};
+    return {.range = kViewRange,
+            .bearing = kHalfView,
+            .detection = detection,
+            .clutter = 0.5 / (2 * kHalfView * kViewRange)};
   }
   SightingSet look(const Pose2& robot, double detection, std::vector<LandmarkKey>& shown) {
     SightingSet seen;
     for (const MapLandmark& l : map_.landmarks()) {
       const Eigen::Vector2d to = l.at - robot.at();
       const double bearing = wrap_angle(std::atan2(to.y(), to.x()) - robot.yaw);
-      if (l.key % static_cast<LandmarkKey>(period_) != 0 || to.norm() > kRange || std::abs(bearing) > kTurn)
+      if (l.key % static_cast<LandmarkKey>(period_) != 0 || to.norm() > kViewRange ||
+          std::abs(bearing) > kHalfView)
         continue;
       if (!random_.bernoulli(detection)) continue;
       seen.sightings.push_back(
@@ -56,7 +60,7 @@ class DoubtfulWorld {
       shown.push_back(random_.bernoulli(0.5) ? l.key : 0);
     }
     if (random_.bernoulli(0.5)) return seen;
-    seen.sightings.push_back(seen_at(random_.uniform(1, kRange), random_.uniform(-kTurn, kTurn)));
+    seen.sightings.push_back(seen_at(random_.uniform(1, kViewRange), random_.uniform(-kHalfView, kHalfView)));
     shown.push_back(0);
     return seen;
   }
