@@ -6,7 +6,7 @@ void register_ready_rules_lanelet2(ReadyRules& rules);
 void register_ready_rules_lanelet2(ReadyRules& rules) {
   rules["lanelet2"] = {
       .summary =
-          "Lanelet2 road maps: signs, lights, poles, walls and their corners and ends, dashes, stop lines",
+          "Lanelet2 road maps: signs, lights, poles, walls with corners and ends, kerbs, dashes, stop lines",
       .json = R"json({
   "waymark_rules": 1,
   "position_sd": 0.15,
@@ -18,6 +18,8 @@ void register_ready_rules_lanelet2(ReadyRules& rules) {
     {"type": "wall", "geometry": "walls", "where": {"type": "wall"}, "features": {"height": "height"}},
     {"type": "wall_corner", "geometry": "corners", "where": {"type": "wall"}},
     {"type": "wall_end", "geometry": "ends", "where": {"type": "wall"}},
+    {"type": "curb", "geometry": "walls", "where": {"type": "curbstone"}, "min_length": 1,
+     "features": {"height": "height"}, "confidence": 0.5},
     {"type": "lane_mark", "geometry": "centroid", "where": {"type": "stop_line"}, "attributes": {"kind": "type"}}
   ]
 }

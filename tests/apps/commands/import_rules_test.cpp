@@ -2,6 +2,8 @@
 // The rules themselves: their faults, and those that come with the program.
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "tests/apps/commands/import_rules_fixture.hpp"
 
 namespace waymark::test {
@@ -40,6 +42,31 @@ TEST_F(ImportRules, ReadyRulesCanBePrintedAndReadAgain) {
     ASSERT_EQ(printed.code, 0) << printed.err;
     EXPECT_TRUE(json::accept(printed.out)) << name;
   }
+}
+
+// Lanelet2 does not say which side of a kerb is lower.
+TEST_F(ImportRules, AKerbOfLanelet2MayFaceEitherSide) {
+  const Outcome said = import(R"(<?xml version='1.0' encoding='UTF-8'?>
+<osm version='0.6'>
+ <node id='1' lat='49.0000000' lon='8.4000000'/> <node id='2' lat='49.0000000' lon='8.4001367'/>
+ <way id='20'><nd ref='1'/><nd ref='2'/><tag k='type' v='curbstone'/><tag k='subtype' v='high'/>
+  <tag k='height' v='0.12'/></way>
+</osm>
+)",
+                              "road.osm", {"--rules", "lanelet2"});
+  ASSERT_EQ(said.code, 0) << said.err;
+  const json kerbs = landmarks("curb");
+  ASSERT_EQ(kerbs.size(), 2U);
+  double turns = 0;
+  for (const json& kerb : kerbs) {
+    EXPECT_NEAR(kerb["length"], 10, 0.05);
+    EXPECT_EQ(kerb["height"], 0.12);
+    EXPECT_EQ(kerb["confidence"], 0.5);
+    EXPECT_NEAR(std::abs(std::cos(double(kerb["direction"]))), 1, 1e-3);
+    turns += std::cos(double(kerb["direction"]));
+  }
+  EXPECT_NEAR(turns, 0, 1e-6);  // one faces north, the other south
+  EXPECT_EQ(waymark({"validate", map_}).code, 0);
 }
 
 }  // namespace
