@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -21,6 +22,13 @@ std::string quote_for_shell(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
   return quoted + "'";
+}
+
+/// Returns the text as a JSON string.
+std::string quote_for_json(const std::string& text) {
+  const bool is_plain = std::ranges::all_of(
+      text, [](unsigned char c) { return c >= ' ' && c < 0x7f && c != '"' && c != '\\'; });
+  return is_plain ? '"' + text + '"' : nlohmann::json(text).dump();
 }
 
 constexpr const char* kMapCall = "map";
@@ -141,14 +149,14 @@ std::string all_marks(const Plan& plan, const StageJobs& jobs, const PlanCommand
 
 std::string plan_as_jsonl(const Plan& plan) {
   std::string lines;
+  auto line = std::back_inserter(lines);
   for (const Unit& unit : plan.units) {
-    auto after = nlohmann::json::array();
-    for (const std::size_t i : unit.after) after.push_back(plan.units[i].id());
-    lines += nlohmann::ordered_json{{"unit", unit.id()}, {"stage", unit.stage},
-                                    {"item", unit.item}, {"fingerprint", unit.fingerprint},
-                                    {"done", unit.done}, {"after", std::move(after)}}
-                 .dump() +
-             "\n";
+    fmt::format_to(line, R"({{"unit":{},"stage":{},"item":{},"fingerprint":"{}","done":{},"after":[)",
+                   quote_for_json(unit.id()), quote_for_json(unit.stage), quote_for_json(unit.item),
+                   unit.fingerprint, unit.done);
+    for (std::size_t k = 0; k < unit.after.size(); ++k)
+      fmt::format_to(line, "{}{}", k == 0 ? "" : ",", quote_for_json(plan.units[unit.after[k]].id()));
+    lines += "]}\n";
   }
   return lines;
 }

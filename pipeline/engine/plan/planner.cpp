@@ -105,25 +105,35 @@ std::string types_fingerprint(const TypeRegistry& types) {
   return sha256(all.dump());
 }
 
-std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
-                             const std::vector<InputFile>& files, const std::string& types) {
-  auto key = nlohmann::json{{"stage", unit.stage},
-                            {"version", step.spec().version},
-                            {"halo", step.spec().halo},
-                            {"options", canonical_options(step)},
-                            {"item", unit.item},
-                            {"types", types},
-                            {"files", nlohmann::json::array()},
-                            {"reads", nlohmann::json::array()}};
+struct UnitFingerprints::Key {
+  nlohmann::json json;
+};
+
+UnitFingerprints::UnitFingerprints(const Plan& plan, const Pipeline& pipeline, const Step& step,
+                                   const std::string& types)
+    : plan_(&plan),
+      pipeline_(&pipeline),
+      key_(new Key{{{"stage", step.spec().name},
+                    {"version", step.spec().version},
+                    {"halo", step.spec().halo},
+                    {"options", canonical_options(step)},
+                    {"types", types}}}) {}
+UnitFingerprints::~UnitFingerprints() = default;
+
+std::string UnitFingerprints::of(const Unit& unit, const std::vector<InputFile>& files) {
+  nlohmann::json& key = key_->json;
+  key["item"] = unit.item;
   if (std::optional<Tile> tile = unit.tile) {
     tile->rank = 0;
     key["tile"] = Codec<std::vector<Tile>>::encode({*tile});
   }
-  for (const InputFile& file : files) key["files"].push_back(file.sha256);
   if (unit.image) key["image"] = unit.image->content;
+  key["files"] = nlohmann::json::array();
+  for (const InputFile& file : files) key["files"].push_back(file.sha256);
+  key["reads"] = nlohmann::json::array();
   for (const std::size_t read : unit.after)
-    if (!unit.image || !lists_images(pipeline, plan.units[read]))
-      key["reads"].push_back(plan.units[read].fingerprint);
+    if (!unit.image || !lists_images(*pipeline_, plan_->units[read]))
+      key["reads"].push_back(plan_->units[read].fingerprint);
   return sha256(key.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace)).substr(0, 32);
 }
 

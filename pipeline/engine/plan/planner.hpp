@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -41,10 +42,22 @@ void append_units(Plan& plan, const Pipeline& pipeline, const Items& items);
 /// texts.
 std::string types_fingerprint(const TypeRegistry& types);
 
-/// Returns a hash of everything that determines the result of a unit, as 32 hex digits: stage, version, halo,
-/// options that affect the result, item, landmark types, contents of input files, fingerprints of the units
-/// it reads. For an image the list that contains it is left out.
-std::string unit_fingerprint(const Plan& plan, const Unit& unit, const Step& step, const Pipeline& pipeline,
-                             const std::vector<InputFile>& files, const std::string& types);
+/// Hashes of everything that determines the results of the units of a stage: stage, version, halo, options
+/// that affect the result, item, landmark types, contents of input files, fingerprints of the units it reads.
+/// For an image the list that contains it is left out.
+class UnitFingerprints {
+ public:
+  /// `types`: types_fingerprint().
+  UnitFingerprints(const Plan& plan, const Pipeline& pipeline, const Step& step, const std::string& types);
+  ~UnitFingerprints();
+  /// Returns that of a unit of the stage, 32 hex digits.
+  std::string of(const Unit& unit, const std::vector<InputFile>& files);
+
+ private:
+  struct Key;
+  const Plan* plan_;
+  const Pipeline* pipeline_;
+  std::unique_ptr<Key> key_;  ///< of the last unit
+};
 
 }  // namespace waymark::pipeline

@@ -130,11 +130,11 @@ void Run::append_stage(bool fingerprints) {
   if (!fingerprints) return;
   std::vector<InputFile> files;
   for (const std::size_t i : stage_inputs_[stage]) files.push_back(inputs_[i]);
+  UnitFingerprints fingerprints_of(plan_, pipeline_, step(stage), types_fingerprint_);
   for (std::size_t i = plan_.begins[stage]; i < plan_.units.size(); ++i) {
     std::vector<InputFile> own = files;
     if (plan_.units[i].image) own.push_back(image_files_.at(i - plan_.begins[stage]));
-    plan_.units[i].fingerprint =
-        unit_fingerprint(plan_, plan_.units[i], step(stage), pipeline_, own, types_fingerprint_);
+    plan_.units[i].fingerprint = fingerprints_of.of(plan_.units[i], own);
     plan_.units[i].done = store_ && store_->contains(plan_.units[i]);
   }
 }

@@ -56,6 +56,19 @@ TEST_F(PlanTest, JsonLines) {
   EXPECT_EQ(units[3]["after"], (nlohmann::json{"square_number/tile_000000", "square_number/tile_000001"}));
 }
 
+TEST(PlanFormats, JsonLinesOfAnyNames) {
+  const std::string odd = "a \"b\" \\ \n \x01 \xc3\xbc.tif";
+  Plan plan;
+  plan.units.resize(2);
+  plan.units[0].stage = "detect", plan.units[0].item = odd;
+  plan.units[1].stage = "merge", plan.units[1].after = {0};
+  std::istringstream lines(plan_as_jsonl(plan));
+  std::string first, second;
+  std::getline(lines, first), std::getline(lines, second);
+  EXPECT_EQ(nlohmann::json::parse(first)["item"], odd);
+  EXPECT_EQ(nlohmann::json::parse(second)["after"], nlohmann::json{"detect/" + odd});
+}
+
 TEST_F(PlanTest, Snakemake) {
   const Plan plan = the_plan();
   const std::string file = plan_as_snakemake(plan, command);
