@@ -158,19 +158,29 @@ inline double noise_divisor(const MapLandmark& landmark, const IdentificationOpt
   return options.quality == "paper" ? std::max(landmark.paper_quality, options.quality_floor) : 1;
 }
 
+/// Returns the factor by which a drive corrected the existence of a doubtful landmark; 1 for others.
+inline double doubt_factor(const MapLandmark& landmark, const IdentificationOptions& options) {
+  const bool is_corrected = landmark.type < options.doubt_factors.size() && landmark.is_doubtful();
+  return is_corrected ? options.doubt_factors[landmark.type] : 1;
+}
+
+/// Doubtful landmarks with a smaller factor are left out: a drive saw less than a quarter of those expected.
+inline constexpr double kMinDoubtFactor = 0.25;
+
 /// Returns the prior probability of a landmark's pairings: that it exists, of a doubtful one times the factor
 /// that the drive taught; 1 unless `quality=existence`.
 inline double existence_prior(const MapLandmark& landmark, const IdentificationOptions& options) {
-  if (options.quality != "existence" || options.quality_floor >= 1) return 1;
-  const bool is_corrected = landmark.type < options.doubt_factors.size() && landmark.is_doubtful();
-  return landmark.quality * (is_corrected ? options.doubt_factors[landmark.type] : 1);
+  return options.quality == "existence" && options.quality_floor < 1
+             ? landmark.quality * doubt_factor(landmark, options)
+             : 1;
 }
 
-/// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it;
-/// false unless `quality=existence` and with `distance=paper`. Beside true landmarks a doubtful one is taken
-/// for an unmapped object more often than it is seen.
+/// Returns whether a landmark is no candidate of sightings without identity, as others nearby outweigh it or
+/// a drive showed that few such landmarks exist; false unless `quality=existence` and with `distance=paper`.
+/// Beside true landmarks a doubtful one is taken for an unmapped object more often than it is seen.
 inline bool is_left_out(const MapLandmark& landmark, const IdentificationOptions& options) {
-  return landmark.outweighed && options.leave_out_outweighed && options.distance != "paper" &&
+  const bool is_unlikely = landmark.outweighed || doubt_factor(landmark, options) < kMinDoubtFactor;
+  return is_unlikely && options.leave_out_outweighed && options.distance != "paper" &&
          options.quality == "existence" && options.quality_floor < 1;
 }
 
