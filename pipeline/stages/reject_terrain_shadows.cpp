@@ -17,6 +17,19 @@ struct RejectTerrainShadows {
              {.help = "Smallest distance of shadow-casting terrain, in cells of the DEM",
               .min = 0,
               .max = 1000});
+      option("min_cells", rules.relief.min_cells,
+             {.help = "Smallest diameter, in cells of the DEM, of a rock that the DEM's relief can refute",
+              .min = 1,
+              .max = 1000});
+      option("min_drop", rules.relief.min_drop,
+             {.help = "Smallest fraction of the light that the DEM's relief takes from a shadow's area to "
+                      "refute its rock; 1: never",
+              .min = 0,
+              .max = 1});
+      option("min_stands_out", rules.relief.min_stands_out,
+             {.help = "Smallest fraction of its height by which a rock stands out of a fine DEM, to be kept",
+              .min = 0,
+              .max = 1});
     }
   };
   static constexpr In<DemHandle> dem{"dem"};
@@ -26,8 +39,8 @@ struct RejectTerrainShadows {
 
   static StageSpec spec() {
     return {.name = "reject_terrain_shadows",
-            .summary = "Rejects rocks whose shadow is cast by terrain, by tracing rays to the sun",
-            .version = 1,
+            .summary = "Rejects rocks whose shadow the terrain explains, by tracing rays to the sun",
+            .version = 2,
             .scope = Scope::image,
             .inputs = {dem, image_view, plausible},
             .outputs = {lit}};

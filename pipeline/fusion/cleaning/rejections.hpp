@@ -8,6 +8,7 @@
 #include "geo/crs.hpp"
 #include "geo/terrain.hpp"
 #include "landmarks/landmark_type.hpp"
+#include "pipeline/fusion/cleaning/shaded_by_relief.hpp"
 #include "pipeline/fusion/projection/image_view.hpp"
 namespace waymark::pipeline {
 
@@ -28,11 +29,14 @@ void reject_implausible(std::span<Observation> observations, const TypeRegistry&
 
 struct TerrainShadowRules {
   double min_distance_cells = 2;  ///< smallest distance between object and shadowing terrain
+  ReliefRules relief = {};
 };
 
-/// Rejects shadow casters detected by a shadow that the terrain casts, even with the sun one standard
-/// deviation higher; tests the centre of the assumed shadow. `image` is the source of all observations;
-/// without sun nothing is rejected. Positions in units of a CRS of `metres_per_unit`.
+/// Rejects shadow casters detected by darkness that the terrain explains, even with the sun one standard
+/// deviation higher. `image` is the source of all observations; without sun nothing is rejected. Positions in
+/// units of a CRS of `metres_per_unit`.
+/// - "in the terrain's shadow": terrain beyond the object shades the centre of the assumed shadow.
+/// - "dark by the terrain's relief": explained_by_relief().
 void reject_terrain_shadows(std::span<Observation> observations, const TypeRegistry& types,
                             const ImageView& image, const Terrain& terrain, double metres_per_unit,
                             const TerrainShadowRules& rules = {});
