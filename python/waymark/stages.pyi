@@ -217,10 +217,13 @@ def reject_rim_shadows(*, inner: float = ..., outer: float = ..., half_angle: fl
     min_confidence: Smallest confidence of a crater whose rim rejects rocks (at least 0, at most 1)"""
     ...
 
-def reject_terrain_shadows(*, min_distance_cells: float = ...) -> dict[str, Any]:
-    """Rejects rocks whose shadow is cast by terrain, by tracing rays to the sun.
+def reject_terrain_shadows(*, min_distance_cells: float = ..., min_cells: float = ..., min_drop: float = ..., min_stands_out: float = ...) -> dict[str, Any]:
+    """Rejects rocks whose shadow the terrain explains, by tracing rays to the sun.
 
-    min_distance_cells: Smallest distance of shadow-casting terrain, in cells of the DEM (at least 0, at most 1000)"""
+    min_distance_cells: Smallest distance of shadow-casting terrain, in cells of the DEM (at least 0, at most 1000)
+    min_cells: Smallest diameter, in cells of the DEM, of a rock that the DEM's relief can refute (at least 1, at most 1000)
+    min_drop: Smallest fraction of the light that the DEM's relief takes from a shadow's area to refute its rock; 1: never (at least 0, at most 1)
+    min_stands_out: Smallest fraction of its height by which a rock stands out of a fine DEM, to be kept (at least 0, at most 1)"""
     ...
 
 def rocks_from_shadows(*, method: str = ..., min_diameter: float = ..., max_diameter: float = ..., min_confidence: float = ..., blur: float = ...) -> dict[str, Any]:
