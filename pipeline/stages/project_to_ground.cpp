@@ -69,7 +69,7 @@ struct ProjectToGround {
   static StageSpec spec() {
     return {.name = "project_to_ground",
             .summary = "Projects detections onto the DEM, with covariances and footprints",
-            .version = 12,
+            .version = 13,
             .scope = Scope::image,
             .inputs = {dem, image_set, detections},
             .outputs = {placed_observations, image_view}};

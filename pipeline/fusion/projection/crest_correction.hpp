@@ -41,14 +41,14 @@ double depth_growth(double shown, double cells);
 
 /// Distance of a crater's crest outside its outline in an image.
 struct CrestCorrection {
-  double growth = 0;     ///< ln(crest / outline), >= 0
+  double growth = 0;     ///< ln(crest / outline); negative where the outline lies outside
   double growth_sd = 0;  ///< from the ambiguity of the heights and the scatter of the law
 };
 
 /// Estimates the crest of a degraded crater from the terrain; the crest lies outside the steepest change of
 /// brightness (docs/methods/craters.md).
 /// - Heights on 13 ellipses (median of 36 azimuths, minus the plane of the surroundings) are compared with
-///   DegradationProfiles of every depth.
+///   DegradationProfiles of every depth, with crests about where the law has them.
 /// - The growth is averaged over their likelihoods with a prior that favours deep craters, as images do.
 /// - A terrain that does not resolve the crater is one of the hypotheses, with growth 0.
 /// `std::nullopt` if the crater is narrower than three cells or heights around it are unknown.
