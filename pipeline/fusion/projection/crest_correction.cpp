@@ -144,7 +144,7 @@ std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const Gr
   static const Profile weights = ring_weights();
   const Profile seen = about_mean(medians(*heights), weights);
   // Neighbouring azimuths and rings are correlated, but the median over azimuths is less uneven than they are
-  // (chosen among 1/6, 2/3, 4/3 and 2; docs/evaluation/2026-11-28-crater-diameters-by-heights.md).
+  // (docs/evaluation/2026-11-28-crater-diameters-by-heights.md).
   const double independent = std::clamp(cells * cells / 1.5, 8.0, 120.0);
   const double variance = std::max(1e-6, unevenness(*heights, weights) / independent);
 
