@@ -79,6 +79,21 @@ TEST(RejectTerrainShadows, BehindACliff) {
   EXPECT_EQ(all[1].rejected, "");
 }
 
+// The scarp is as large as the supposed rock, so a ray that starts beyond the rock misses it.
+TEST(RejectTerrainShadows, OfReliefAsLargeAsTheRock) {
+  Grid<float> heights(101, 101, 0);
+  for (std::int64_t r = 40; r < 61; ++r)
+    for (std::int64_t c = 52; c < 62; ++c) heights(c, r) = 3;
+  const Terrain terrain(std::move(heights), -50, 50, 1, 1);
+  ImageView image;
+  image.name = "a";
+  image.sun = Sun{Degrees{90}, Degrees{30}};
+  std::vector<Observation> all{rock(2, 0, 3, 3), rock(-40, 0, 3, 3)};
+  reject_terrain_shadows(all, kTypes, image, terrain, 1);
+  EXPECT_EQ(all[0].rejected, "dark by the terrain's relief");
+  EXPECT_EQ(all[1].rejected, "");
+}
+
 TEST(MergeObservations, MergesByEquationThree) {
   std::vector<Observation> all{rock(0, 0, 1.0, 0, "a"), rock(0.05, 0, 1.2, 0, "b")};
   all[0].confidence = 0.9, all[1].confidence = 0.3;

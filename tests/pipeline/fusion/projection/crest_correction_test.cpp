@@ -147,6 +147,17 @@ TEST(CrestCorrection, IsFoundByTheDepthTheHeightsShow) {
     }
 }
 
+TEST(CrestCorrection, HeightsMoveTheCrestOffTheLaw) {
+  for (const double depth : {0.15, 0.11})
+    for (const double off : {-0.09, 0.09}) {
+      const auto state = state_of_depth(depth);
+      const double growth = growth_of(state) + off;
+      const auto crest = crest_correction(ground(20, state), circle(20 * std::exp(-growth)), 0.65);
+      ASSERT_TRUE(crest);
+      EXPECT_NEAR(crest->growth, growth, 0.03) << depth << ", off by " << off;
+    }
+}
+
 TEST(CrestCorrection, SaysNothingOfWhatTheHeightsDoNotResolve) {
   const auto state = state_of_depth(0.1);
   const auto flat = crest_correction(ground(12, state, 0), circle(12), 0.65);
