@@ -8,8 +8,10 @@
 #include <cmath>
 #include <numeric>
 
+#include "localization/detectors/cloud_bearings.hpp"
 #include "localization/detectors/cloud_columns.hpp"
 #include "localization/detectors/cloud_ground.hpp"
+#include "localization/detectors/column_flanks.hpp"
 #include "localization/detectors/upright_shape.hpp"
 
 namespace waymark::localization {
@@ -28,6 +30,12 @@ constexpr double kRowReach = 2;           // m; columns of a wall seen at a flat
 constexpr double kFlat = 0.93;            // cosine between such a wall and the line of sight
 constexpr double kStraight = -0.95;       // cosine between the neighbours on both sides
 constexpr double kSame = 0.6;             // m between axes of one pole
+constexpr double kMaxCutOff = 0.7;        // of the layers of a pole
+
+/// A point above the ground, and the tangent of its elevation.
+struct SeenPoint : RaisedPoint {
+  float slope;
+};
 
 /// Points above the ground, sorted into cells.
 class PointGrid {
@@ -35,14 +43,14 @@ class PointGrid {
   PointGrid(const PointCloud& cloud, double max_range)
       : cells_(2 * static_cast<int>(std::ceil(max_range / kCell))) {
     const CloudGround ground(cloud.points, max_range);
-    std::vector<RaisedPoint> raised;
+    std::vector<SeenPoint> raised;
     std::vector<std::uint32_t> cell_of;
     starts_.assign(static_cast<std::size_t>(cells_) * static_cast<std::size_t>(cells_) + 1, 0);
     for (const Eigen::Vector3f& p : cloud.points) {
       if (!(p.head<2>().norm() < static_cast<float>(max_range))) continue;
       const float height = p.z() - ground.at(p.x(), p.y());
       if (!(height > static_cast<float>(kFoot) && height < static_cast<float>(kLayer * kLayers))) continue;
-      raised.push_back({p.head<2>(), height});
+      raised.push_back({{p.head<2>(), height}, p.z() / p.head<2>().norm()});
       cell_of.push_back(static_cast<std::uint32_t>(cell(index(p.x()), index(p.y()))));
       ++starts_[cell_of.back() + 1];
     }
@@ -90,7 +98,7 @@ class PointGrid {
 
   int cells_;
   std::vector<std::uint32_t> starts_, masks_;
-  std::vector<RaisedPoint> points_;
+  std::vector<SeenPoint> points_;
 };
 
 /// Cells that are tall and whose neighbours have no more points.
@@ -155,6 +163,26 @@ FreePiece longest_free_piece(const PointGrid& grid, const Eigen::Vector2d& at, d
   return best;
 }
 
+/// Returns the layers of a piece of a column that have points.
+std::vector<ColumnLayer> layers_of(const PointGrid& grid, const Eigen::Vector2d& at, const FreePiece& piece) {
+  const Eigen::Vector2d along = at.normalized(), across(-along.y(), along.x());
+  std::array<std::optional<ColumnLayer>, kLayers> layers;
+  grid.within(at, kShape, [&](const SeenPoint& p, double) {
+    const auto height = static_cast<double>(p.height), slope = static_cast<double>(p.slope);
+    if (height < piece.base || height > piece.top) return;
+    const Eigen::Vector2d to = p.at.cast<double>();
+    const double off = std::atan2(across.dot(to), along.dot(to));
+    std::optional<ColumnLayer>& l = layers[static_cast<std::size_t>(PointGrid::layer(p.height))];
+    if (!l) l = {.right = off, .left = off, .low = slope, .high = slope};
+    l->right = std::min(l->right, off), l->left = std::max(l->left, off);
+    l->low = std::min(l->low, slope), l->high = std::max(l->high, slope);
+  });
+  std::vector<ColumnLayer> seen;
+  for (const std::optional<ColumnLayer>& l : layers)
+    if (l) seen.push_back(*l);
+  return seen;
+}
+
 /// Returns whether a pole is one of a row of columns along the line of sight, as of a wall seen at a flat
 /// angle.
 bool stands_in_row(const Eigen::Vector2d& at, const std::vector<Eigen::Vector2d>& columns) {
@@ -176,6 +204,7 @@ std::vector<CloudPole> find_poles(const PointCloud& cloud, const CloudPoleOption
   std::vector<Eigen::Vector2d> columns = candidates(grid);
   for (Eigen::Vector2d& column : columns) column = shifted_to_mean(grid, column);
   const double step = column_step(cloud);
+  const CloudBearings bearings(cloud.points);
   std::vector<CloudPole> poles;
   for (const Eigen::Vector2d& at : columns) {
     if (at.norm() > options.max_range) continue;
@@ -189,6 +218,9 @@ std::vector<CloudPole> find_poles(const PointCloud& cloud, const CloudPoleOption
     if (static_cast<int>(points.size()) < options.min_points) continue;
     const std::optional<UprightShape> shape = fit_upright(points, step, options.max_diameter);
     if (!shape || stands_in_row(at, columns)) continue;
+    if (cut_off_fraction(layers_of(grid, at, piece), bearings, std::atan2(at.y(), at.x()), at.norm(), step) >
+        kMaxCutOff)
+      continue;
     const CloudPole pole{.at = shape->axis,
                          .covariance = shape->covariance,
                          .diameter = shape->diameter,

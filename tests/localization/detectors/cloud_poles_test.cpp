@@ -4,10 +4,15 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <string>
 
 #include "localization/detectors/scan_landmarks.hpp"
 
@@ -130,6 +135,75 @@ TEST(CloudPoles, NothingIsFoundInNothing) {
   bad.points = {{nan, 0, 0}, {inf, inf, inf}, {5, 5, nan}, {1e30F, -1e30F, 0}};
   EXPECT_TRUE(find_poles(bad).empty());
   EXPECT_TRUE(find_poles(scan({.posts = {}, .boxes = {{{-60, 5}, {60, 6}, 8}}}, 1)).empty());  // a wall
+}
+
+// Two vans with a gap between them, and a house front behind, of which the gap shows a strip.
+Street street_with_gap(double width) {
+  return {.posts = {},
+          .boxes = {
+              {{-4, 5}, {-width / 2, 6.8}, 2.3}, {{width / 2, 5}, {4, 6.8}, 2.3}, {{-60, 12}, {60, 13}, 8}}};
+}
+
+TEST(CloudPoles, AStripOfAHouseFrontIsNone) {
+  for (double width = 0.1; width < 1; width += 0.05)
+    EXPECT_TRUE(find_poles(scan(street_with_gap(width), 1)).empty()) << width;
+}
+
+TEST(CloudPoles, OneInAGapIsFound) {
+  Street street = street_with_gap(0.6);
+  street.posts.push_back({{0.02, 9.5}, 0.06, 4});
+  const auto poles = find_poles(scan(street, 1));
+  ASSERT_EQ(poles.size(), 1U);
+  EXPECT_LT((poles[0].at - street.posts[0].at).norm(), 0.05);
+}
+
+TEST(CloudPoles, OneThatAVanHidesOnOneSideIsFound) {
+  const Eigen::Vector2d corner(6, 6);
+  for (const double beside : {0.0, 0.05}) {  // m from the line of sight along the van's corner to the axis
+    const Eigen::Vector2d stem = 1.5 * corner + beside * Eigen::Vector2d(1, -1).normalized();
+    const auto poles = find_poles(scan({.posts = {{stem, 0.2, 4}}, .boxes = {{{2, 6}, {6, 7.8}, 2.3}}}, 1));
+    ASSERT_EQ(poles.size(), 1U) << beside;
+    EXPECT_LT((poles[0].at - stem).norm(), 0.2) << beside;
+  }
+}
+
+// Between two houses the side of one is seen at a flat angle: neighbouring columns of the scanner are a metre
+// apart on it.
+TEST(CloudPoles, AWallAtAFlatAngleIsNone) {
+  for (double side = 2; side < 4; side += 0.25)
+    EXPECT_TRUE(
+        find_poles(scan({.posts = {}, .boxes = {{{8, side}, {30, 12}, 8}, {{-60, -12}, {60, -10}, 8}}}, 1))
+            .empty())
+        << side;
+}
+
+// 19 of the poles of the list have eight points in the scan.
+TEST(RealScan, PolesOfKitti) {
+  const std::filesystem::path data = WAYMARK_SOURCE_DIR "/../shared/data/environments/lidar3d_kitti00";
+  if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not on this machine";
+  std::vector<Eigen::Vector2d> listed;
+  std::ifstream list(data / "poles.csv");
+  std::string line;
+  std::getline(list, line);
+  while (std::getline(list, line))
+    listed.emplace_back(std::stod(line), std::stod(line.substr(line.find(',') + 1)));
+  PointCloud cloud;
+  std::ifstream points(data / "scan_000000.xyz.f32", std::ios::binary);
+  for (std::array<char, 12> bytes; points.read(bytes.data(), bytes.size());) {
+    const auto xyz = std::bit_cast<std::array<float, 3>>(bytes);
+    cloud.points.emplace_back(xyz[0], xyz[1], xyz[2]);
+  }
+  int right = 0, others = 0;
+  double sum = 0;
+  for (const CloudPole& pole : find_poles(cloud)) {
+    double offset = 1e9;
+    for (const Eigen::Vector2d& at : listed) offset = std::min(offset, (at - pole.at).norm());
+    offset < 0.5 ? ++right : ++others;
+    if (offset < 0.5) sum += offset;
+  }
+  EXPECT_GE(right, 16);
+  EXPECT_LE(others, 1);
+  EXPECT_LT(sum / right, 0.11);
 }
 
 TEST(CloudPoles, TheDetectorGivesSightingsOfTheMapsTypes) {
