@@ -34,8 +34,10 @@ class MapDrive final : public Command {
                  .offering(Offer::file)
                  .or_else("the true poses of the log"),
              Argument{"--scans", "NAME,...", &request_.scans,
-                      fmt::format("Detectors for laser scans: {}",
-                                  fmt::join(localization::laser_detectors().names(), ", "))}
+                      fmt::format("Detectors for laser scans: {}; for 3-D scans: {} (all if none of these is "
+                                  "named)",
+                                  fmt::join(localization::laser_detectors().names(), ", "),
+                                  fmt::join(localization::point_detectors().names(), ", "))}
                  .or_else("walls,wall_lines"),
              Argument{"--max-range", "M", &request_.max_range, "Do not use sightings farther away, metres"}
                  .or_else("20"),
@@ -54,7 +56,9 @@ class MapDrive final : public Command {
         .examples = {{"waymark map intel.clf --poses corrected.csv -o office.gpkg",
                       "Corners and ends of walls"},
                      {"waymark map drive.jsonl --scans poles -o street.gpkg",
-                      "Posts, by the true poses of a simulated drive"}},
+                      "Posts, by the true poses of a simulated drive"},
+                     {"waymark map kitti --poses poses.csv --scans poles_3d --max-range 40 -o street.gpkg",
+                      "Posts in 3-D scans"}},
         .result = result_keys()};
   }
 

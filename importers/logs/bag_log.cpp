@@ -248,11 +248,13 @@ class BagReader {
   std::string first_unsound_;
 };
 
-/// Returns whether a detector of 3-D scans makes a type that the map holds.
-bool shows_in_clouds(const TypeRegistry& types, std::span<const TypeId> held) {
+/// Returns whether a detector of 3-D scans makes a type that the map holds, or one is named.
+bool shows_in_clouds(const TypeRegistry& types, const LogImport& how) {
+  if (!how.point_detectors.empty()) return true;
   const auto is_held = [&](const std::string& name) {
     const auto type = localization::type_in_map(types, name);
-    return type && (held.empty() || std::ranges::find(held, *type) != held.end());
+    return type &&
+           (how.held_types.empty() || std::ranges::find(how.held_types, *type) != how.held_types.end());
   };
   return std::ranges::any_of(localization::point_detectors(),
                              [&](const localization::DetectorSpec& detector) {
@@ -263,15 +265,16 @@ bool shows_in_clouds(const TypeRegistry& types, std::span<const TypeId> held) {
 }  // namespace
 
 localization::RobotLog import_bag_log(const std::filesystem::path& path, const TypeRegistry& types,
-                                      const std::vector<std::string>& topics, std::span<const TypeId> held) {
-  BagReader reader(path, topics);
+                                      const LogImport& how) {
+  BagReader reader(path, how.topics);
   std::vector<std::string> remarks =
       visit_bag(path, [&](const BagMessage& message) { reader.read(message); });
   reader.choose_odometry();
   reader.check();
   if (const auto clouds = reader.choose_clouds()) {
-    if (shows_in_clouds(types, held)) {
-      const localization::PointDetector detect = localization::make_point_detector(types, held);
+    if (shows_in_clouds(types, how)) {
+      const localization::PointDetector detect =
+          localization::make_point_detector(types, how.held_types, how.point_detectors);
       visit_bag(path, [&](const BagMessage& message) { reader.read_cloud_of(*clouds, detect, message); });
     } else {
       reader.leave_clouds_out(clouds->topic);

@@ -259,7 +259,7 @@ localization::RobotLog import_csv_log(const std::filesystem::path& file, const s
                                       const std::optional<SensorCoverage>& sensor) {
   CsvLog csv(file, columns);
   const std::vector<LogRecord> records = csv.records();
-  localization::RobotLog log = read_log_records(file, records, types, sensor);
+  localization::RobotLog log = read_log_records(file, records, types, {.sensor = sensor});
   for (std::string& remark : csv.remarks()) log.remarks.push_back(std::move(remark));
   return log;
 }

@@ -72,13 +72,13 @@ localization::RobotLog read_log(const fs::path& path, const TypeRegistry& types,
                 fmt::format("robot {} is asked for in a log of the format {}", how.robot, format),
                 path.string(), "only datasets of MRCLAM have several robots");
   if (format == "csv") return import_csv_log(path, how.columns, types, how.sensor);
-  if (format == "waymark") return import_waymark_log(path, types, how.sensor, how.held_types);
+  if (format == "waymark") return import_waymark_log(path, types, how);
   if (format == "mrclam") return import_mrclam_log(path, how.robot, types);
   if (format == "victoria-park")
     return import_victoria_park(fs::is_directory(path) ? path : path.parent_path());
   if (format == "carmen") return import_carmen_log(path);
-  if (format == "rosbag2" || format == "mcap") return import_bag_log(path, types, how.topics, how.held_types);
-  if (format == "points") return import_point_log(path, types, how.held_types);
+  if (format == "rosbag2" || format == "mcap") return import_bag_log(path, types, how);
+  if (format == "points") return import_point_log(path, types, how);
   if (format == "isam" || format == "g2o" || format == "toro") return import_graph_log(path, format);
   throw Error(
       ErrorCode::usage, "there is no log format '" + format + "'", path.string(),

@@ -26,6 +26,8 @@ struct LogImport {
   std::optional<SensorCoverage> sensor = {};
   /// Types that the map holds: only these are detected in 3-D scans. Empty: all of `types`.
   std::vector<TypeId> held_types = {};
+  /// Names of the detectors for 3-D scans; empty: all whose types are detected.
+  std::vector<std::string> point_detectors = {};
 };
 
 /// Reads a log of any format. `types` maps the types of the sightings to ids; other types become kNoSuchType.
@@ -33,11 +35,10 @@ struct LogImport {
 localization::RobotLog import_log(const std::filesystem::path& path, const TypeRegistry& types,
                                   const LogImport& how = {});
 
-/// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md). `sensor` gives the
-/// standard deviations of sightings that state none; `held` is as in LogImport.
+/// Reads Waymark's own format: JSON, one object per line (docs/reference/log_format.md). Of `how` it uses
+/// `sensor`, `held_types` and `point_detectors`.
 localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
-                                          const std::optional<SensorCoverage>& sensor = {},
-                                          std::span<const TypeId> held = {});
+                                          const LogImport& how = {});
 
 /// Reads a text table with a time per line, and readings in its columns (docs/reference/log_format.md).
 /// `columns` assigns expressions to targets: "t=stamp/1000,v=speed,omega=rad(rate)"; columns named like a
@@ -73,20 +74,19 @@ localization::RobotLog import_carmen_log(const std::filesystem::path& file);
 /// Reads a bag of ROS 2 without ROS: a .db3 or .mcap file, or the folder of a recording. Throws Error{input}.
 /// - Odometry becomes steps; scans get their pose on the robot from tf and tf_static.
 /// - Satellite fixes are in degrees (`fix_crs`). An IMU gives the yaw where odometry has none, and headings.
-/// - Point clouds become sightings by the detectors whose types the map holds (`held` as in LogImport). The
-///   files are read twice for them, so that one cloud is in memory at a time.
-/// - Of several topics of a type, the one in `topics` is read, else the one with the most messages.
+/// - Point clouds become sightings by `held_types` and `point_detectors` of `how`. The files are read twice
+///   for them, so that one cloud is in memory at a time.
+/// - Of several topics of a type, the one in `topics` of `how` is read, else the one with the most messages.
 /// - Messages that cannot be read, and those of other types, are skipped and counted.
 localization::RobotLog import_bag_log(const std::filesystem::path& path, const TypeRegistry& types = {},
-                                      const std::vector<std::string>& topics = {},
-                                      std::span<const TypeId> held = {});
+                                      const LogImport& how = {});
 
 /// Reads a folder of 3-D scans (point_files.hpp), or its subfolder `velodyne`, in the order of their names:
-/// each becomes sightings by the detectors whose types the map holds, so that one scan is in memory at a
+/// each becomes sightings by `held_types` and `point_detectors` of `how`, so that one scan is in memory at a
 /// time. `times.txt` gives their seconds. There is no odometry: poses come from elsewhere, as in `waymark map
 /// --poses`.
 localization::RobotLog import_point_log(const std::filesystem::path& folder, const TypeRegistry& types,
-                                        std::span<const TypeId> held = {});
+                                        const LogImport& how = {});
 /// Returns whether a folder holds 3-D scans.
 bool is_point_log(const std::filesystem::path& folder);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <filesystem>
-#include <optional>
 #include <span>
 #include <string>
+#include "importers/logs/import_log.hpp"
 #include "landmarks/landmark_type.hpp"
-#include "landmarks/sensor_profile.hpp"
 #include "localization/robot_log.hpp"
 namespace waymark::importers {
 
@@ -16,11 +15,8 @@ struct LogRecord {
 };
 
 /// Reads records (docs/reference/log_format.md). `file` is named in errors and must outlive the call.
-/// `sensor` gives the standard deviations of sightings that state none; `held` is as in LogImport. Throws
-/// Error{input} with file and line.
+/// Of `how` it uses `sensor`, `held_types` and `point_detectors`. Throws Error{input} with file and line.
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
-                                        const TypeRegistry& types,
-                                        const std::optional<SensorCoverage>& sensor = {},
-                                        std::span<const TypeId> held = {});
+                                        const TypeRegistry& types, const LogImport& how = {});
 
 }  // namespace waymark::importers

@@ -53,14 +53,15 @@ bool is_point_log(const fs::path& folder) {
 }
 
 localization::RobotLog import_point_log(const fs::path& folder, const TypeRegistry& types,
-                                        std::span<const TypeId> held) {
+                                        const LogImport& how) {
   const std::vector<fs::path> files = scans_in(folder);
   if (files.empty())
     throw Error(ErrorCode::input, "the folder has no 3-D scans", folder.string(),
                 "scans are .bin files of KITTI or .ply files, in it or in its folder velodyne");
   localization::RobotLog log;
   const std::vector<double> times = times_of(folder, files.size(), log.remarks);
-  const localization::PointDetector detect = localization::make_point_detector(types, held);
+  const localization::PointDetector detect =
+      localization::make_point_detector(types, how.held_types, how.point_detectors);
   for (std::size_t i = 0; i < files.size(); ++i)
     log.events.push_back({times[i], detect(read_point_file(files[i]))});
   localization::clean_log(log);

@@ -48,8 +48,7 @@ class NumberReader final : public OptionVisitor {
 
 class Reader {
  public:
-  Reader(const TypeRegistry& types, const std::optional<SensorCoverage>& sensor, std::span<const TypeId> held)
-      : types_(types), held_(held), sensor_(sensor) {}
+  Reader(const TypeRegistry& types, const LogImport& how) : types_(types), how_(how), sensor_(how.sensor) {}
 
   void read(const LogLine& line) {
     const std::string kind = line.text("kind");
@@ -234,7 +233,7 @@ class Reader {
   }
 
   localization::SightingSet points(const LogLine& line) {
-    if (!detect_) detect_ = localization::make_point_detector(types_, held_);
+    if (!detect_) detect_ = localization::make_point_detector(types_, how_.held_types, how_.point_detectors);
     const std::filesystem::path file = line.text("file");
     localization::PointCloud cloud =
         read_point_file(file.is_absolute() ? file : line.file().parent_path() / file);
@@ -305,7 +304,7 @@ class Reader {
   double last_truth_yaw_ = 0;
   localization::PointDetector detect_;
   const TypeRegistry& types_;
-  std::span<const TypeId> held_;
+  const LogImport& how_;
   std::optional<SensorCoverage> sensor_;         // absent: assumed deviations
   std::optional<double> range_sd_, bearing_sd_;  // of the header, m and rad
   localization::RobotLog log_;
@@ -315,18 +314,15 @@ class Reader {
 }  // namespace
 
 localization::RobotLog read_log_records(const std::filesystem::path& file, std::span<const LogRecord> records,
-                                        const TypeRegistry& types,
-                                        const std::optional<SensorCoverage>& sensor,
-                                        std::span<const TypeId> held) {
+                                        const TypeRegistry& types, const LogImport& how) {
   if (records.empty()) throw Error(ErrorCode::input, "the log is empty", file.string(), "");
-  Reader reader(types, sensor, held);
+  Reader reader(types, how);
   for (const LogRecord& record : records) reader.read({file, record.line, record.json});
   return reader.take();
 }
 
 localization::RobotLog import_waymark_log(const std::filesystem::path& file, const TypeRegistry& types,
-                                          const std::optional<SensorCoverage>& sensor,
-                                          std::span<const TypeId> held) {
+                                          const LogImport& how) {
   std::istringstream text(read_text(file, "the file"));
   std::vector<LogRecord> records;
   std::size_t number = 0;
@@ -334,7 +330,7 @@ localization::RobotLog import_waymark_log(const std::filesystem::path& file, con
     ++number;
     if (line.find_first_not_of(" \t\r") != std::string::npos) records.push_back({number, std::move(line)});
   }
-  return read_log_records(file, records, types, sensor, held);
+  return read_log_records(file, records, types, how);
 }
 
 }  // namespace waymark::importers

@@ -86,16 +86,16 @@ bool only_reflectors(const MapTypes& of_map) {
   });
 }
 
-std::vector<const DetectorSpec*> named_detectors(std::string_view list) {
+/// Returns the detectors of a list of names, separated by commas, each once. Throws `unknown(name)`.
+template <class Unknown>
+std::vector<const DetectorSpec*> named_detectors(const DetectorTable& table, std::string_view list,
+                                                 const Unknown& unknown) {
   std::vector<const DetectorSpec*> chosen;
   for (std::size_t from = 0; from <= list.size();) {
     const std::size_t comma = std::min(list.find(',', from), list.size());
     const std::string_view name = list.substr(from, comma - from);
-    const DetectorSpec* const detector = laser_detectors().find(name);
-    if (!detector)
-      throw Error(ErrorCode::usage, fmt::format("there is no detector '{}' for laser scans", name),
-                  fmt::format("--set scans={}", list),
-                  fmt::format("known are auto, {}", fmt::join(laser_detectors().names(), ", ")));
+    const DetectorSpec* const detector = table.find(name);
+    if (!detector) throw unknown(name);
     if (std::ranges::find(chosen, detector) == chosen.end()) chosen.push_back(detector);
     from = comma + 1;
   }
@@ -130,12 +130,31 @@ void add_scan_detector(const DetectorSpec& detector) {
   (detector.record == "laser" ? tables_of_detectors().laser : tables_of_detectors().points).add(detector);
 }
 
-PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held) {
+PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held,
+                                  std::span<const std::string> names) {
   const MapTypes of_map{types, held};
+  for (const std::string& name : names)
+    if (!point_detectors().find(name))
+      throw Error(ErrorCode::usage, fmt::format("there is no detector '{}' for 3-D scans", name), "",
+                  fmt::format("known are {}", fmt::join(point_detectors().names(), ", ")));
   std::vector<PointDetector> detectors;
   for (const DetectorSpec& detector : point_detectors())
-    if (makes_type_of(detector, of_map)) detectors.push_back(detector.make_points(types));
+    if (makes_type_of(detector, of_map) &&
+        (names.empty() || std::ranges::find(names, detector.name) != names.end()))
+      detectors.push_back(detector.make_points(types));
   return detect_held(std::move(detectors), of_map);
+}
+
+NamedDetectors name_scan_detectors(std::string_view list, std::string_view option) {
+  if (list == "auto") return {.laser = {"auto"}, .points = {}};
+  NamedDetectors named;
+  for (const DetectorSpec* detector : named_detectors(scan_detectors(), list, [&](std::string_view name) {
+         return Error(ErrorCode::usage, fmt::format("there is no detector '{}' for scans", name),
+                      fmt::format("{} {}", option, list),
+                      fmt::format("known are auto, {}", fmt::join(scan_detectors().names(), ", ")));
+       }))
+    (detector->record == "laser" ? named.laser : named.points).push_back(detector->name);
+  return named;
 }
 
 LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetectionOptions& options,
@@ -146,7 +165,12 @@ LaserDetector make_laser_detector(const TypeRegistry& types, const ScanDetection
   if (by_map)
     detectors = detectors_of_map(types, wanted);
   else
-    for (const DetectorSpec* detector : named_detectors(options.find))
+    for (const DetectorSpec* detector :
+         named_detectors(laser_detectors(), options.find, [&](std::string_view name) {
+           return Error(ErrorCode::usage, fmt::format("there is no detector '{}' for laser scans", name),
+                        fmt::format("--set scans={}", options.find),
+                        fmt::format("known are auto, {}", fmt::join(laser_detectors().names(), ", ")));
+         }))
       detectors.push_back(detector->make(types));
   if (detectors.empty()) detectors.push_back(stems_of_no_type());
   const LaserDetector without_intensities = by_map && only_reflectors(wanted) ? stems_of_no_type() : nullptr;

@@ -2,6 +2,8 @@
 #pragma once
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 #include "core/options.hpp"
 #include "localization/detectors/detector_table.hpp"
 namespace waymark::localization {
@@ -29,8 +31,19 @@ const DetectorTable& scan_detectors();
 void add_scan_detector(const DetectorSpec& detector);
 
 /// Returns the detectors for 3-D scans of the types that a map holds, as one. `types` are those of its
-/// tables, `held` those of its landmarks; empty: all of `types`.
-PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held = {});
+/// tables, `held` those of its landmarks; empty: all of `types`. `names`: of the detectors to use; empty:
+/// all. Throws Error{usage} for an unknown name.
+PointDetector make_point_detector(const TypeRegistry& types, std::span<const TypeId> held = {},
+                                  std::span<const std::string> names = {});
+
+/// Detectors that a list names, by the records that they read.
+struct NamedDetectors {
+  std::vector<std::string> laser, points;
+};
+
+/// Returns the detectors of a list of names, separated by commas; of `auto` that name for laser scans. Throws
+/// Error{usage} for an unknown name; `option`: that gave the list, for the message.
+NamedDetectors name_scan_detectors(std::string_view list, std::string_view option);
 
 /// Returns the detectors that the options name, for the types of a map, as one. `auto` detects only types
 /// that the map holds, as above. Throws Error{usage} for an unknown name.

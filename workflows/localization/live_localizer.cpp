@@ -93,8 +93,8 @@ localization::RobotLog LiveLocalizer::read(const std::string& lines) const {
   for (std::string line; std::getline(text, line);)
     if (!line.empty()) records.push_back({records.size() + 1, line});
   localization::RobotLog log = importers::read_log_records(
-      name, records, map().types(), sensor_ ? std::optional(sensor_->coverage) : std::nullopt,
-      map().held_types);
+      name, records, map().types(),
+      {.sensor = sensor_ ? std::optional(sensor_->coverage) : std::nullopt, .held_types = map().held_types});
   localization::convert_to_map_frame(log, map().frame);
   return log;
 }

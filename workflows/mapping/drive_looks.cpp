@@ -43,7 +43,7 @@ std::vector<DriveLook> looks_of_drive(const localization::RobotLog& log,
   for (const localization::LogEvent& event : log.events) {
     const auto* scan = std::get_if<localization::LaserScan>(&event.what);
     const auto* seen = std::get_if<localization::SightingSet>(&event.what);
-    if (!scan && !seen) continue;
+    if (!seen && !(scan && detect)) continue;
     const auto robot = localization::pose_at(poses, event.t, options.max_gap);
     if (!robot) continue;
     const bool is_near = last && (robot->at() - last->at()).norm() < options.min_step &&

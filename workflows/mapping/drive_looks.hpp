@@ -26,7 +26,8 @@ struct DriveLook {
 };
 
 /// Returns the looks of a drive at known poses: the first, and each that is `min_step` or `min_turn` from the
-/// look before, since a robot that stands sees one thing many times. `name` begins their names.
+/// look before, since a robot that stands sees one thing many times. `name` begins their names. Without
+/// `detect`, laser scans are left out.
 std::vector<DriveLook> looks_of_drive(const localization::RobotLog& log,
                                       std::span<const localization::StampedPose> poses,
                                       const localization::ScanDetector& detect, const std::string& name,

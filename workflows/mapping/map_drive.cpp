@@ -2,6 +2,7 @@
 #include "workflows/mapping/map_drive.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <cmath>
@@ -66,6 +67,16 @@ LocalFrame frame_of_poses(const Crs& crs, const localization::RobotLog& log) {
   return {crs, crs.kind() == CrsKind::local ? Point<MapCrs>() : Point<MapCrs>{{first.x, first.y, 0}}};
 }
 
+/// Returns the landmark types that the detectors make.
+std::vector<std::string> types_of(const localization::NamedDetectors& named) {
+  std::set<std::string> types;
+  for (const auto& names : {named.laser, named.points})
+    for (const std::string& name : names)
+      if (const auto* const detector = localization::scan_detectors().find(name))
+        types.insert(detector->types.begin(), detector->types.end());
+  return {types.begin(), types.end()};
+}
+
 /// How often the beginning of a drive sees its objects again.
 struct Recurrence {
   std::int64_t sightings = 0, objects = 0;
@@ -106,8 +117,12 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
   keep_inputs(request.map, {request.log, request.poses});
   const auto started = std::chrono::system_clock::now();
   const TypeRegistry& types = all_types();
-  const localization::ScanDetector detect =
-      localization::make_laser_detector(types, {.find = request.scans, .features = true});
+  const localization::NamedDetectors named = localization::name_scan_detectors(request.scans, "--scans");
+  request.log_format.point_detectors = named.points;
+  localization::ScanDetector detect;  // none: laser scans are not used
+  if (!named.laser.empty())
+    detect = localization::make_laser_detector(
+        types, {.find = fmt::format("{}", fmt::join(named.laser, ",")), .features = true});
   localization::RobotLog log = importers::import_log(request.log, types, request.log_format);
   for (const std::string& remark : log.remarks) callbacks.warning(remark + ": " + request.log);
   read_poses(request, log);
@@ -149,7 +164,7 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
         "detector of single objects, such as --scans poles: {}",
         made.untyped, request.log));
   }
-  if (const std::string fault = unusable_ranges_warning(log); !fault.empty())
+  if (const std::string fault = unusable_ranges_warning(log); detect && !fault.empty())
     callbacks.warning(fault + ": " + request.log);
   if (const std::string fault = exchanged_sides(log, detect, frame, options); !fault.empty())
     callbacks.warning(fault + ": " + request.log);
@@ -162,13 +177,7 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
                         .sightings = stage.counts.in,
                         .rejected = {stage.counts.rejected.begin(), stage.counts.rejected.end()}};
   contents.run = make_single_step_record(std::move(stage), request.log, request.command_line, started);
-  std::set<std::string> made_types;
-  for (const localization::DetectorSpec& detector : localization::laser_detectors())
-    if (request.scans.find(detector.name) != std::string::npos)
-      made_types.insert(detector.types.begin(), detector.types.end());
-  const auto written =
-      geodb::write_map(request.map, contents,
-                       {.empty_tables = std::vector<std::string>(made_types.begin(), made_types.end())});
+  const auto written = geodb::write_map(request.map, contents, {.empty_tables = types_of(named)});
   callbacks.summary(
       fmt::format("{} looks, {} sightings, {} of them beyond {} m, {} improbable landmarks removed\n",
                   looks.size(), sightings, made.too_far, request.max_range, made.improbable));

@@ -15,9 +15,11 @@ struct DriveMapRequest {
   std::string map;    ///< to write; an older map of that name is replaced
   std::string crs;    ///< of the poses, local or projected; empty: the log's, else local
   importers::LogImport log_format = {};
-  std::string scans = "walls,wall_lines";  ///< detectors for laser scans, separated by commas
-  double max_range = 20;                   ///< m, > 0: farther sightings are not used
-  std::string command_line = {};           ///< recorded in the map
+  /// Detectors for scans, separated by commas. 3-D scans are searched by all of theirs if none is named;
+  /// laser scans are then not used if only detectors for 3-D scans are.
+  std::string scans = "walls,wall_lines";
+  double max_range = 20;          ///< m, > 0: farther sightings are not used
+  std::string command_line = {};  ///< recorded in the map
 };
 
 /// What a drive gave.

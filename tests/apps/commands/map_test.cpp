@@ -7,11 +7,13 @@
 #include <fstream>
 #include <functional>
 #include <iostream>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "tests/apps/program.hpp"
 
 namespace waymark::test {
+using testing::AllOf, testing::ElementsAre, testing::Gt, testing::HasSubstr, testing::Pair;
 namespace {
 
 // 45 minutes in an office, by an odometry that turns left by 0.06 rad per metre: map of the even minutes,
@@ -70,6 +72,40 @@ TEST(RealHall, TheGraphOfTheIntelLabFromNothingFitsItsRelations) {
   EXPECT_GE(count, 2900);
   EXPECT_LT(all, 0.05);
   EXPECT_LT(apart, 0.07);
+}
+
+/// A drive through a short street with a line scanner and a 3-D scanner.
+class MadeStreet : public testing::Test {
+ protected:
+  MadeStreet() {
+    write_text(folder_.path() / "street.json",
+               R"({"waymark_scenario": 1, "seed": 61, "street": {"length": 40},
+                   "drive": {"speed": 2, "scanner": {"on": true}}})");
+    EXPECT_EQ(waymark({"simulate", folder_ / "street.json", "-o", folder_ / "drive"}).code, 0);
+  }
+
+  /// Returns the numbers of landmarks of a map by the detectors of a list, by type.
+  std::map<std::string, int> map_by(const std::string& scans) {
+    const Outcome made = waymark({"map", folder_ / "drive/log.jsonl", "--scans", scans, "--max-range", "40",
+                                  "-o", folder_ / "street.gpkg", "--format", "json"});
+    EXPECT_EQ(made.code, 0) << made.err;
+    return nlohmann::json::parse(made.out)["landmarks"];
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(MadeStreet, BothScannersHaveDetectorsByName) {
+  EXPECT_THAT(map_by("poles_3d"), ElementsAre(Pair("pole", Gt(5))));
+  EXPECT_THAT(map_by("facades,curbs"), ElementsAre(Pair("curb", Gt(0)), Pair("wall", Gt(1))));
+  const auto of_all = map_by("poles");
+  for (const char* type : {"curb", "pole", "wall"}) EXPECT_GT(of_all.count(type), 0) << type;
+  EXPECT_THAT(map_by("wall_lines,poles_3d"), ElementsAre(Pair("pole", Gt(5)), Pair("wall", Gt(1))));
+  const Outcome refused = waymark(
+      {"map", folder_ / "drive/log.jsonl", "--scans", "poles_3d,poels", "-o", folder_ / "street.gpkg"});
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("there is no detector 'poels' for scans"), HasSubstr("poles_3d"),
+                                 HasSubstr("wall_lines")));
 }
 
 /// A drive through a small hall, whose scans `change` edits.
