@@ -4,16 +4,17 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <sstream>
 #include <string>
+#include <vector>
 
+#include "core/text_file.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 
 namespace waymark::test {
@@ -182,17 +183,17 @@ TEST(RealScan, PolesOfKitti) {
   const std::filesystem::path data = WAYMARK_SOURCE_DIR "/../shared/data/environments/lidar3d_kitti00";
   if (!std::filesystem::exists(data)) GTEST_SKIP() << data << " is not on this machine";
   std::vector<Eigen::Vector2d> listed;
-  std::ifstream list(data / "poles.csv");
+  std::istringstream list(read_text(data / "poles.csv", "the list of poles"));
   std::string line;
   std::getline(list, line);
   while (std::getline(list, line))
     listed.emplace_back(std::stod(line), std::stod(line.substr(line.find(',') + 1)));
   PointCloud cloud;
-  std::ifstream points(data / "scan_000000.xyz.f32", std::ios::binary);
-  for (std::array<char, 12> bytes; points.read(bytes.data(), bytes.size());) {
-    const auto xyz = std::bit_cast<std::array<float, 3>>(bytes);
-    cloud.points.emplace_back(xyz[0], xyz[1], xyz[2]);
-  }
+  const std::string bytes = read_text(data / "scan_000000.xyz.f32", "the scan");
+  std::vector<float> values(bytes.size() / sizeof(float));
+  std::memcpy(values.data(), bytes.data(), values.size() * sizeof(float));
+  for (std::size_t i = 0; i + 2 < values.size(); i += 3)
+    cloud.points.emplace_back(values[i], values[i + 1], values[i + 2]);
   int right = 0, others = 0;
   double sum = 0;
   for (const CloudPole& pole : find_poles(cloud)) {
