@@ -27,7 +27,8 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
       visible_(std::move(visible)),
       map_(std::move(map)),
       centre_(start.pose.at()),
-      starts_(options_.max_range) {
+      starts_(options_.max_range),
+      missed_(map_.landmarks().size()) {
   if (!map_.empty()) {
     IdentificationOptions identification = options_.identification;
     identification.certainty = std::max(identification.certainty, kCertainty);
@@ -150,7 +151,7 @@ std::vector<Match> EkfSlam::update(const SightingSet& set) {
   std::vector<bool> is_found(landmarks_.size(), false);
   for (const std::optional<std::size_t>& landmark : last_)
     if (landmark) is_found[*landmark] = true;
-  update_existence(near, is_found);
+  update_existence(seen, near, is_found);
   add_new(seen, found.comparisons, matches);
   if (search_) check_relocalization(set, near, is_found);
   return matches;
@@ -193,7 +194,8 @@ void EkfSlam::match(const SightingSet& seen, std::vector<SlamPair> pairs, std::v
       m.at = map_[p.landmark].at, m.covariance = map_[p.landmark].covariance;
     else if (l.was_mapped)
       m.at = l.at, m.covariance = l.covariance;
-    l.log_odds = std::min(l.log_odds + options_.seen, kSurestLogOdds);
+    l.log_odds = std::min(l.log_odds - l.missed + options_.seen, kSurestLogOdds);
+    l.missed = 0;
     ++l.matches;
     if (l.line) {
       see_piece(l, s, state_.pose() * seen.robot_from_sensor);
@@ -290,29 +292,56 @@ void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   landmarks_.push_back(std::move(fresh));
 }
 
-void EkfSlam::update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found) {
+MissedViews::Look EkfSlam::look_at(const SightingSet& seen, const SlamCandidate& candidate, bool found) const {
+  return {.landmark = candidate.landmark,
+          .source = seen.ranges ? 1 : 0,
+          .type = landmarks_[candidate.landmark].type,
+          .sensor = (state_.pose() * seen.robot_from_sensor).at(),
+          .range = candidate.sighting.value[0],
+          .is_seen = found};
+}
+
+void EkfSlam::update_existence(const SightingSet& seen, std::span<const SlamCandidate> near,
+                               const std::vector<bool>& found) {
   const double unseen = unseen_evidence(detection(), options_.unseen);
   for (const SlamCandidate& candidate : near) {
     const std::size_t i = candidate.landmark;
     const bool is_expected = candidate.is_expected;
     SlamLandmark& l = landmarks_[i];
     if (found[i] || is_expected) ++l.expected;
-    if (is_expected && l.log_odds >= options_.confirmed) hits_ += found[i], ++chances_;
-    // A landmark with an identity exists: a misread identity is rarer than a missed detection.
-    if (!is_expected || found[i] || (options_.identification.use_identities && l.key && l.matches > 0))
-      continue;
-    l.log_odds += unseen;
-    if (l.log_odds >= options_.dropped) continue;
-    if (l.key) landmark_by_key_.erase(*l.key);
-    l.gone = true;
-    if (l.slot) {
-      l.at = state_.at(*l.slot);
-      l.covariance = state_.covariance(*l.slot);
-      state_.remove(*l.slot);
-      l.slot.reset();
+    if (is_expected && l.log_odds >= options_.confirmed && (!l.was_mapped || l.matches > 0))
+      hits_ += found[i], ++chances_;
+    const bool is_named = options_.identification.use_identities && l.key && l.matches > 0;
+    if (l.was_mapped && !l.line) {
+      if (found[i]) {
+        missed_.note_match(i);
+        l.missed = 0;
+      }
+      if (!is_expected) continue;
+      missed_.add(look_at(seen, candidate, found[i]));
+      if (found[i] || is_named) continue;
+      const double now = missed_.evidence(i);
+      l.log_odds += now - l.missed;
+      l.missed = now;
+    } else {
+      // A landmark with an identity exists: a misread identity is rarer than a missed detection.
+      if (!is_expected || found[i] || is_named) continue;
+      l.log_odds += unseen;
     }
-    l.feature_samples = {};
+    if (l.log_odds < options_.dropped) remove(l);
   }
+}
+
+void EkfSlam::remove(SlamLandmark& l) {
+  if (l.key) landmark_by_key_.erase(*l.key);
+  l.gone = true;
+  if (l.slot) {
+    l.at = state_.at(*l.slot);
+    l.covariance = state_.covariance(*l.slot);
+    state_.remove(*l.slot);
+    l.slot.reset();
+  }
+  l.feature_samples = {};
 }
 
 std::vector<SlamLandmark> EkfSlam::landmark_states() {

@@ -13,6 +13,7 @@
 #include "localization/line_of_sight.hpp"
 #include "localization/localizer.hpp"
 #include "localization/slam/bearing_starts.hpp"
+#include "localization/slam/missed_views.hpp"
 #include "localization/slam/slam_association.hpp"
 #include "localization/slam/slam_landmark.hpp"
 #include "localization/slam/slam_options.hpp"
@@ -111,7 +112,10 @@ class EkfSlam final : public Localizer {
   void see_piece(SlamLandmark& landmark, const SeenLandmark& seen, const Pose2& sensor);
   void add(const BearingStarts::Start& start, const SightingSet& seen);
   void append(SlamLandmark fresh, const SeenLandmark& seen);
-  void update_existence(std::span<const SlamCandidate> near, const std::vector<bool>& found);
+  void update_existence(const SightingSet& seen, std::span<const SlamCandidate> near,
+                        const std::vector<bool>& found);
+  MissedViews::Look look_at(const SightingSet& seen, const SlamCandidate& candidate, bool found) const;
+  void remove(SlamLandmark& landmark);
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,
                             const std::vector<bool>& found);
@@ -139,6 +143,7 @@ class EkfSlam final : public Localizer {
   bool sees_bearings_ = false;                                ///< a sighting had no range
   BearingStarts starts_;
   double hits_ = 0, chances_ = 0;
+  MissedViews missed_;  ///< of landmarks of the map
   std::size_t unplaced_ranges_ = 0;
   std::optional<SlamRelocalization> search_;
   std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial

@@ -16,6 +16,7 @@ struct SlamLandmark {
   Eigen::Vector2d at = Eigen::Vector2d::Zero();
   Eigen::Matrix2d covariance = Eigen::Matrix2d::Zero();
   double log_odds = 0;  ///< of its existence: the evidence counter of section 4.4
+  double missed = 0;    ///< the part of `log_odds` that views since the last match took (MissedViews)
   std::int64_t matches = 0;
   std::int64_t expected = 0;       ///< sets of sightings that should have shown it, matched ones included
   std::optional<LandmarkKey> key;  ///< of the map's landmark, or of the identity it was seen with

@@ -18,6 +18,7 @@ constexpr double kLostFade = 0.002;              // decay of the usual fit while
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
 // Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
 constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
+constexpr double kExpectedDetection = 0.3;  // of landmarks whose absence is a sign of a wrong pose
 constexpr int kUnmatchedSets = 10;
 constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
@@ -162,8 +163,10 @@ void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const Slam
   for (const SlamCandidate& candidate : near) {
     const std::size_t i = candidate.landmark;
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
-    evidence.expected += candidate.is_expected;
-    evidence.found += candidate.is_expected && found[i];
+    const bool is_expected =
+        candidate.is_expected && missed_.detection(look_at(seen, candidate, false)) >= kExpectedDetection;
+    evidence.expected += is_expected;
+    evidence.found += is_expected && found[i];
     evidence.matched += found[i];
   }
   if (rival_) compare_with_rival(seen);
@@ -199,6 +202,7 @@ void EkfSlam::compare_with_rival(const SightingSet& seen) {
 
 void EkfSlam::restart(const PoseEstimate& at) {
   state_.focus(1e9);
+  missed_.forget_views();
   SlamState fresh(at);
   landmark_by_slot_.clear();
   for (std::size_t i = 0; i < landmarks_.size(); ++i) {
@@ -207,7 +211,7 @@ void EkfSlam::restart(const PoseEstimate& at) {
     if (l.was_mapped) {  // as in the map: what was learnt while lost belongs to other landmarks
       set_as_mapped(l, map_[i]);
       l.log_odds = std::max(l.log_odds, log_odds(l.quality));
-      l.gone = false;
+      l.gone = false, l.missed = 0;
       if (l.key) landmark_by_key_.insert_or_assign(*l.key, i);
       l.slot.reset();
     } else if (l.slot) {
