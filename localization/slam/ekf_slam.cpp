@@ -13,6 +13,7 @@ namespace waymark::localization {
 namespace {
 
 constexpr double kCertainty = 0.9;  // of a pair with a landmark of the map: it is not revised
+constexpr double kStands = 4;  // log odds, at most, that an object of a map still stands before it is seen
 
 }  // namespace
 
@@ -292,7 +293,8 @@ void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   landmarks_.push_back(std::move(fresh));
 }
 
-MissedViews::Look EkfSlam::look_at(const SightingSet& seen, const SlamCandidate& candidate, bool found) const {
+MissedViews::Look EkfSlam::look_at(const SightingSet& seen, const SlamCandidate& candidate,
+                                   bool found) const {
   return {.landmark = candidate.landmark,
           .source = seen.ranges ? 1 : 0,
           .type = landmarks_[candidate.landmark].type,
@@ -308,28 +310,24 @@ void EkfSlam::update_existence(const SightingSet& seen, std::span<const SlamCand
     const std::size_t i = candidate.landmark;
     const bool is_expected = candidate.is_expected;
     SlamLandmark& l = landmarks_[i];
-    if (found[i] || is_expected) ++l.expected;
+    const bool by_views = l.was_mapped && !l.line;
+    const bool counts = by_views ? candidate.is_in_view : is_expected;
+    if (found[i] || counts) ++l.expected;
     if (is_expected && l.log_odds >= options_.confirmed && (!l.was_mapped || l.matches > 0))
       hits_ += found[i], ++chances_;
-    const bool is_named = options_.identification.use_identities && l.key && l.matches > 0;
-    if (l.was_mapped && !l.line) {
-      if (found[i]) {
-        missed_.note_match(i);
-        l.missed = 0;
-      }
-      if (!is_expected) continue;
-      missed_.add(look_at(seen, candidate, found[i]));
-      if (found[i] || is_named) continue;
-      const double now = missed_.evidence(i);
-      l.log_odds += now - l.missed;
-      l.missed = now;
-    } else {
-      // A landmark with an identity exists: a misread identity is rarer than a missed detection.
-      if (!is_expected || found[i] || is_named) continue;
-      l.log_odds += unseen;
-    }
+    if (by_views && found[i]) missed_.note_match(i);
+    if (by_views && counts) missed_.add(look_at(seen, candidate, found[i]));
+    // A landmark with an identity exists: a misread identity is rarer than a missed detection.
+    if (!counts || found[i] || (options_.identification.use_identities && l.key && l.matches > 0)) continue;
+    by_views ? revise_by_views(l, missed_.evidence(i)) : void(l.log_odds += unseen);
     if (l.log_odds < options_.dropped) remove(l);
   }
+}
+
+void EkfSlam::revise_by_views(SlamLandmark& l, double evidence) const {
+  if (l.missed == 0 && evidence < 0 && l.matches == 0) l.log_odds = std::min(l.log_odds, kStands);
+  l.log_odds += evidence - l.missed;
+  l.missed = evidence;
 }
 
 void EkfSlam::remove(SlamLandmark& l) {

@@ -115,6 +115,7 @@ class EkfSlam final : public Localizer {
   void update_existence(const SightingSet& seen, std::span<const SlamCandidate> near,
                         const std::vector<bool>& found);
   MissedViews::Look look_at(const SightingSet& seen, const SlamCandidate& candidate, bool found) const;
+  void revise_by_views(SlamLandmark& landmark, double evidence) const;
   void remove(SlamLandmark& landmark);
   Eigen::Vector2d position(std::size_t landmark) const;
   void check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,

@@ -91,11 +91,12 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
                   e.by_landmark.transpose();
     // Expects detections only within the range and view that the sensor has shown, and where nothing hides
     // them. With a map nothing counts as hidden: what is expected also decides whether the robot is lost.
-    const bool expected = !landmark.line && range < 0.7 * std::min(options_.max_range, reach_) &&
-                          std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
-                          (!visible_ || visible_(sensor, position(l))) &&
-                          (!map_.empty() || !seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
-    near.push_back({l, expected, e, covariance, extent});
+    const bool in_view = !landmark.line && range < std::min(options_.max_range, reach_) &&
+                         std::abs(bearing) < std::min(options_.field_of_view, 0.9 * view_) &&
+                         (!visible_ || visible_(sensor, position(l))) &&
+                         (!map_.empty() || !seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
+    const bool expected = in_view && range < 0.7 * std::min(options_.max_range, reach_);
+    near.push_back({l, expected, in_view, e, covariance, extent});
   };
   for (const SlamState::Slot slot : state_.active())
     if (const std::size_t l = landmark_by_slot_[slot]; landmarks_[l].slot == slot) look_at(l);

@@ -10,6 +10,11 @@ namespace {
 constexpr double kViewLength = 0.5;  // of the range: another view begins
 constexpr int kLooks = 3;            // from which a view that is not over counts as missed
 
+// Returns the expected probability of what happened `yes` times and did not `no` times.
+double jeffreys(double yes, double no) {
+  return (yes + 0.5) / (yes + no + 1);
+}
+
 }  // namespace
 
 MissedViews::Key MissedViews::key_of(const Look& look) {
@@ -91,8 +96,7 @@ double MissedViews::evidence(std::size_t landmark) const {
   for (const History& h : landmarks_[landmark].histories) {
     if (h.missed_since_match == 0) continue;
     const Bin& bin = bins_[h.bin];
-    const double w = (1 + bin.invisible) / (2 + bin.invisible + bin.visible);
-    const double m = (1 + bin.missed) / (2 + bin.views);
+    const double w = jeffreys(bin.invisible, bin.visible), m = jeffreys(bin.missed, bin.views - bin.missed);
     sum += std::log(w + (1 - w) * std::pow(m, h.missed_since_match));
   }
   return sum;
@@ -102,7 +106,7 @@ double MissedViews::detection(const Look& look) const {
   const auto at = index_.find(key_of(look));
   if (at == index_.end()) return 0.5;
   const Bin& bin = bins_[at->second];
-  return (1 + bin.hits) / (2 + bin.looks);
+  return jeffreys(bin.hits, bin.looks - bin.hits);
 }
 
 void MissedViews::forget_views() {

@@ -14,14 +14,15 @@ namespace waymark::localization {
 ///   misses of different views are nearly independent. Its bin: sensor, landmark type, half octave of range.
 /// - A fraction w of existing landmarks is never visible from a bin. Another one is missed there in each view
 ///   with probability m: n missed views have the probability w + (1 - w) m^n.
-/// - w = (1 + I) / (2 + I + V) counts landmarks that were seen somewhere: V were seen in the bin, I were not.
+/// - w = (I + 1/2) / (I + V + 1) counts landmarks that were matched in this drive: V were seen in the bin, I
+///   were not. m likewise counts views of the V landmarks (Jeffreys' prior for both).
 class MissedViews {
  public:
   explicit MissedViews(std::size_t landmarks = 0) : landmarks_(landmarks) {}
 
   struct Look {
     std::size_t landmark = 0;
-    int source = 0;  ///< of the set of sightings
+    int source = 0;  ///< kind of sensor
     std::optional<TypeId> type;
     Eigen::Vector2d sensor = Eigen::Vector2d::Zero();
     double range = 1;  ///< m
@@ -29,11 +30,11 @@ class MissedViews {
   };
   /// Adds a look at a landmark that the sensor might show.
   void add(const Look& look);
-  /// Notes that a landmark was matched: it exists, and its missed views until now are no evidence.
+  /// Notes that a landmark was matched: it exists, and the views that missed it before are no evidence.
   void note_match(std::size_t landmark);
   /// Returns the log likelihood, <= 0, of the views that missed a landmark since its last match.
   double evidence(std::size_t landmark) const;
-  /// Returns the fraction of looks in which a landmark that exists is seen in the bin of a look.
+  /// Returns the fraction of looks in the bin of `look` that show a landmark which exists; 1/2 if unknown.
   double detection(const Look& look) const;
   /// Forgets the missed views of all landmarks; rates stay.
   void forget_views();
@@ -42,7 +43,7 @@ class MissedViews {
   struct Bin {
     double visible = 0, invisible = 0;  ///< landmarks: V and I
     double views = 0, missed = 0;       ///< of visible landmarks
-    double looks = 0, hits = 0;         ///< of landmarks that were seen somewhere
+    double looks = 0, hits = 0;         ///< of landmarks that were matched
   };
   struct History {  ///< of a landmark in a bin
     std::size_t bin = 0;

@@ -13,7 +13,8 @@ namespace waymark::localization {
 /// A landmark with which the sightings of a set are compared.
 struct SlamCandidate {
   std::size_t landmark = 0;
-  bool is_expected = false;   ///< the sensor should see it if it exists
+  bool is_expected = false;   ///< it is in view and near: the sensor should see it if it exists
+  bool is_in_view = false;    ///< within the range and view that the sensor has shown, and not hidden
   ExpectedSighting sighting;  ///< at the estimated pose
   Eigen::Matrix2d
       covariance;  ///< of `sighting` by the errors of pose and landmark, without the sensor's noise

@@ -18,7 +18,7 @@ constexpr double kLostFade = 0.002;              // decay of the usual fit while
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
 // Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
 constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
-constexpr double kExpectedDetection = 0.3;  // of landmarks whose absence is a sign of a wrong pose
+constexpr double kExpectedDetection = 0.65;  // fraction of looks: a landmark of such a bin should be seen
 constexpr int kUnmatchedSets = 10;
 constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
