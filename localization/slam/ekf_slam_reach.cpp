@@ -96,7 +96,7 @@ std::vector<SlamCandidate> EkfSlam::landmarks_in_reach(const SightingSet& seen) 
                          (!visible_ || visible_(sensor, position(l))) &&
                          (!map_.empty() || !seen.ranges || is_in_sight(*seen.ranges, e.value, covariance));
     const bool expected = in_view && range < 0.7 * std::min(options_.max_range, reach_);
-    near.push_back({l, expected, in_view, e, covariance, extent});
+    near.push_back({l, expected, e, covariance, extent, in_view});
   };
   for (const SlamState::Slot slot : state_.active())
     if (const std::size_t l = landmark_by_slot_[slot]; landmarks_[l].slot == slot) look_at(l);

@@ -23,7 +23,7 @@ class MissedViews {
   struct Look {
     std::size_t landmark = 0;
     int source = 0;  ///< kind of sensor
-    std::optional<TypeId> type;
+    std::optional<TypeId> type = {};
     Eigen::Vector2d sensor = Eigen::Vector2d::Zero();
     double range = 1;  ///< m
     bool is_seen = false;

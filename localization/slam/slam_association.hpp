@@ -14,12 +14,12 @@ namespace waymark::localization {
 struct SlamCandidate {
   std::size_t landmark = 0;
   bool is_expected = false;   ///< it is in view and near: the sensor should see it if it exists
-  bool is_in_view = false;    ///< within the range and view that the sensor has shown, and not hidden
   ExpectedSighting sighting;  ///< at the estimated pose
   Eigen::Matrix2d
       covariance;  ///< of `sighting` by the errors of pose and landmark, without the sensor's noise
   /// Where pieces of a line may lie, from the foot of the sensor on it; absent for a point.
   std::optional<LineExtent> extent = {};
+  bool is_in_view = false;  ///< within the range and view that the sensor has shown, and not hidden
 };
 
 /// A sighting and the landmark that it may show.
