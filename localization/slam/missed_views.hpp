@@ -10,8 +10,9 @@
 namespace waymark::localization {
 
 /// What missed detections say about landmarks of a map, with rates learnt from those that were seen.
-/// - A view is all looks from places closer together than half of the range of its first look, so that
-///   misses of different views are nearly independent. Its bin: sensor, landmark type, half octave of range.
+/// - A view is all looks from places within half of the range of its first look. Misses of different views
+/// are
+///   nearly independent. Its bin: sensor, landmark type, half octave of range.
 /// - A fraction w of existing landmarks is never visible from a bin. Another one is missed there in each view
 ///   with probability m: n missed views have the probability w + (1 - w) m^n.
 /// - w = (I + 1/2) / (I + V + 1) counts landmarks that were matched in this drive: V were seen in the bin, I
