@@ -37,8 +37,8 @@ TEST(MissedViews, AMissSaysMuchWhereAllOthersAreVisibleAndNothingWhereNoneIs) {
     EXPECT_NEAR(missed.evidence(l), std::log(20.5 / 21 + 0.25 / 21), 1e-12);
   view(missed, 20, 0, false, 20);
   EXPECT_GT(missed.evidence(20), -0.05);
-  view(missed, 20, 1, false, 6);
-  EXPECT_LT(missed.evidence(20), std::log(0.05));  // 0.5 / 21 twice
+  view(missed, 20, 2, false, 6);                   // 20 m on: another view
+  EXPECT_LT(missed.evidence(20), std::log(0.05));  // 0.024 + 0.976 * 0.024
 }
 
 TEST(MissedViews, AMatchTakesBackWhatMissesSaid) {
