@@ -9,6 +9,7 @@ namespace {
 
 constexpr double kViewLength = 0.5;  // of the range: another view begins
 constexpr int kLooks = 3;            // from which a view that is not over counts as missed
+constexpr double kMinLooks = 20;     // of a bin whose rate is known
 
 // Returns the expected probability of what happened `yes` times and did not `no` times.
 double jeffreys(double yes, double no) {
@@ -107,6 +108,13 @@ double MissedViews::detection(const Look& look) const {
   if (at == index_.end()) return 0.5;
   const Bin& bin = bins_[at->second];
   return jeffreys(bin.hits, bin.looks - bin.hits);
+}
+
+double MissedViews::best_detection() const {
+  double best = -1;
+  for (const Bin& bin : bins_)
+    if (bin.looks >= kMinLooks) best = std::max(best, jeffreys(bin.hits, bin.looks - bin.hits));
+  return best < 0 ? 0.5 : best;
 }
 
 void MissedViews::forget_views() {

@@ -11,8 +11,7 @@ namespace waymark::localization {
 
 /// What missed detections say about landmarks of a map, with rates learnt from those that were seen.
 /// - A view is all looks from places within half of the range of its first look. Misses of different views
-/// are
-///   nearly independent. Its bin: sensor, landmark type, half octave of range.
+///   are nearly independent. Its bin: sensor, landmark type, half octave of range.
 /// - A fraction w of existing landmarks is never visible from a bin. Another one is missed there in each view
 ///   with probability m: n missed views have the probability w + (1 - w) m^n.
 /// - w = (I + 1/2) / (I + V + 1) counts landmarks that were matched in this drive: V were seen in the bin, I
@@ -37,6 +36,8 @@ class MissedViews {
   double evidence(std::size_t landmark) const;
   /// Returns the fraction of looks in the bin of `look` that show a landmark which exists; 1/2 if unknown.
   double detection(const Look& look) const;
+  /// Returns the largest such fraction of the bins with twenty looks or more; 1/2 if there is none.
+  double best_detection() const;
   /// Forgets the missed views of all landmarks; rates stay.
   void forget_views();
 

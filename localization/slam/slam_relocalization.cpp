@@ -18,7 +18,8 @@ constexpr double kLostFade = 0.002;              // decay of the usual fit while
 constexpr double kConfident = 0.6;  // fraction of the usual fit above which the finder is not called
 // Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
 constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
-constexpr double kExpectedDetection = 0.65;  // fraction of looks: a landmark of such a bin should be seen
+// Fraction of looks, or of that of the best bin: a landmark of such a bin should be seen.
+constexpr double kExpectedDetection = 0.65, kOfBest = 0.8;
 constexpr int kUnmatchedSets = 10;
 constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
@@ -160,11 +161,12 @@ LocalizationStatus EkfSlam::status() const {
 void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const SlamCandidate> near,
                                    const std::vector<bool>& found) {
   SetEvidence evidence = in_map_;
+  const double min_detection = std::min(kExpectedDetection, kOfBest * missed_.best_detection());
   for (const SlamCandidate& candidate : near) {
     const std::size_t i = candidate.landmark;
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
     const bool is_expected =
-        candidate.is_expected && missed_.detection(look_at(seen, candidate, false)) >= kExpectedDetection;
+        candidate.is_expected && missed_.detection(look_at(seen, candidate, false)) >= min_detection;
     evidence.expected += is_expected;
     evidence.found += is_expected && found[i];
     evidence.matched += found[i];

@@ -208,7 +208,7 @@ TEST(EkfSlam, LandmarksHiddenByTerrainAreNotExpected) {
   EkfSlam open(known_pose(a.truth()), grid_of(map), {}, made_drive_options());
   EkfSlam hilly(known_pose(b.truth()), grid_of(map), {}, made_drive_options(),
                 [&](const Pose2&, const Eigen::Vector2d& at) { return (at - hidden.at).norm() > 0.1; });
-  for (int i = 0; i < 6; ++i) {
+  for (int i = 0; i < 20; ++i) {  // 4 m: looks from one place are one view
     open.predict(a.drive(0.2)), hilly.predict(b.drive(0.2));
     open.update(a.look()), hilly.update(b.look());
   }
