@@ -111,10 +111,10 @@ double MissedViews::detection(const Look& look) const {
 }
 
 double MissedViews::best_detection() const {
-  double best = -1;
+  double best = 0;
   for (const Bin& bin : bins_)
     if (bin.looks >= kMinLooks) best = std::max(best, jeffreys(bin.hits, bin.looks - bin.hits));
-  return best < 0 ? 0.5 : best;
+  return best > 0 ? best : 1;
 }
 
 void MissedViews::forget_views() {

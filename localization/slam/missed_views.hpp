@@ -36,7 +36,7 @@ class MissedViews {
   double evidence(std::size_t landmark) const;
   /// Returns the fraction of looks in the bin of `look` that show a landmark which exists; 1/2 if unknown.
   double detection(const Look& look) const;
-  /// Returns the largest such fraction of the bins with twenty looks or more; 1/2 if there is none.
+  /// Returns the largest such fraction of the bins with twenty looks or more; 1 if there is none.
   double best_detection() const;
   /// Forgets the missed views of all landmarks; rates stay.
   void forget_views();
