@@ -19,7 +19,7 @@ constexpr double kConfident = 0.6;  // fraction of the usual fit above which the
 // Sets between two searches of the whole map and two checks of the pose: while searching, in doubt, else.
 constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDoubt = 3;
 // Fraction of looks, or of that of the best bin: a landmark of such a bin should be seen.
-constexpr double kExpectedDetection = 0.65, kOfBest = 0.8;
+constexpr double kExpectedDetection = 0.65, kOfBest = 0.95;
 constexpr int kUnmatchedSets = 10;
 constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
