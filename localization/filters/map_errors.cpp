@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/filters/map_errors.hpp"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -12,6 +14,7 @@ namespace waymark::localization {
 namespace {
 
 constexpr std::size_t kMaxLandmarks = 100;  // the least recently seen one is forgotten
+constexpr double kMaxExplained = 0.98;      // of a variance, by what it is correlated with
 
 /// A sighting as a linear function of pose and landmark, with the noise of what is not linear.
 struct LinearSighting {
@@ -62,11 +65,10 @@ Eigen::Matrix2d error_of(const SeenLandmark& seen, const MapLandmark& landmark,
 /// forgotten, mixed or undone by a motion may leave more, and an update would then make variances negative.
 Eigen::Matrix<double, 3, 2> limit_correlation(const Eigen::Matrix<double, 3, 2>& with,
                                               const Eigen::Matrix3d& pose, const Eigen::Matrix2d& landmark) {
-  constexpr double max_explained = 0.98;  // of the landmark's variance explained by the pose
   const Eigen::Matrix2d explained = landmark.inverse() * with.transpose() * pose.inverse() * with;
   const double mean = explained.trace() / 2;
   const double largest = mean + std::sqrt(std::max(0.0, mean * mean - explained.determinant()));
-  return largest > max_explained ? Eigen::Matrix<double, 3, 2>(with * std::sqrt(max_explained / largest))
+  return largest > kMaxExplained ? Eigen::Matrix<double, 3, 2>(with * std::sqrt(kMaxExplained / largest))
                                  : with;
 }
 
@@ -85,6 +87,22 @@ void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
       after.covariance * (before.covariance + 1e-12 * Eigen::Matrix3d::Identity()).inverse();
   if (!change.allFinite()) return clear();
   for (Entry& e : errors_) e.covariance = change * e.covariance;
+}
+
+// Errors of different landmarks are independent: together they explain no more of the pose than all of it.
+// What was forgotten or mixed, or a line that swings about another point, may leave more; the pose would then
+// become certain by its own errors.
+void MapErrors::limit_jointly(const Eigen::Matrix3d& pose) {
+  Eigen::Matrix3d explained = Eigen::Matrix3d::Zero();
+  for (const Entry& e : errors_) explained += e.covariance * e.information * e.covariance.transpose();
+  const Eigen::LLT<Eigen::Matrix3d> root(pose);
+  if (root.info() != Eigen::Success) return clear();
+  const Eigen::Matrix3d half = root.matrixL().solve(explained);
+  const Eigen::Matrix3d fraction = root.matrixL().solve(half.transpose());
+  const double largest =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(fraction, Eigen::EigenvaluesOnly).eigenvalues()[2];
+  if (!(largest > kMaxExplained)) return;
+  for (Entry& e : errors_) e.covariance *= std::sqrt(kMaxExplained / largest);
 }
 
 /// A sighting with all that a correction needs; rows that it lacks are zero.
@@ -130,11 +148,12 @@ Eigen::Matrix3d MapErrors::apply(const Linear& line, const WithLandmark& gain, c
   for (Entry& e : errors_) e.covariance = a * e.covariance;
   if (memory_ > 0) {
     const WithLandmark now = a * line.with_landmark - gain * b * line.map_error;
+    const Entry entry{line.key, now, driven_, line.map_error.inverse()};
     const auto at = std::ranges::lower_bound(errors_, line.key, {}, &Entry::key);
     if (at != errors_.end() && at->key == line.key)
-      *at = {line.key, now, driven_};
+      *at = entry;
     else
-      errors_.insert(at, {line.key, now, driven_});
+      errors_.insert(at, entry);
     drop_old();
   }
   return (after + after.transpose()) / 2;
@@ -143,6 +162,7 @@ Eigen::Matrix3d MapErrors::apply(const Linear& line, const WithLandmark& gain, c
 PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& seen,
                                 const Pose2& robot_from_sensor, const MapLandmark& landmark, double trust,
                                 bool unscented) {
+  limit_jointly(before.covariance);
   const Linear line = linear_sighting(before, seen, robot_from_sensor, landmark, trust, unscented);
   const Eigen::Matrix<double, 2, 3>& h = line.by_pose;
   const Eigen::Matrix2d& b = line.by_landmark;
@@ -158,6 +178,7 @@ PoseEstimate MapErrors::correct(const PoseEstimate& before, const SeenLandmark& 
 MapErrors::Covariances MapErrors::follow(const Pose2& pose, const Covariances& before,
                                          const SeenLandmark& seen, const Pose2& robot_from_sensor,
                                          const MapLandmark& landmark, double factor) {
+  limit_jointly(before.real);
   const Linear line = linear_sighting({pose, before.real}, seen, robot_from_sensor, landmark, 1, false);
   const Eigen::Matrix2d& b = line.by_landmark;
   const WithLandmark with_seen = before.assumed * line.by_pose.transpose();

@@ -49,13 +49,15 @@ class MapErrors {
   struct Entry {
     LandmarkKey key;
     WithLandmark covariance;
-    double driven;  // at the last sighting, m
+    double driven;                // at the last sighting, m
+    Eigen::Matrix2d information;  // inverse covariance of the landmark's error at the last sighting
   };
   struct Linear;
   Linear linear_sighting(const PoseEstimate& before, const SeenLandmark& seen, const Pose2& robot_from_sensor,
                          const MapLandmark& landmark, double trust, bool unscented) const;
   Eigen::Matrix3d apply(const Linear& line, const WithLandmark& gain, const Eigen::Matrix3d& before);
   void drop_old();
+  void limit_jointly(const Eigen::Matrix3d& pose);
 
   double memory_, driven_ = 0;
   std::vector<Entry> errors_;  // by key
