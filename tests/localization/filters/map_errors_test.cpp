@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <cmath>
 #include <cstdio>
@@ -253,6 +254,39 @@ TEST(MapErrors, NoVarianceBecomesNegative) {
       Eigen::LLT<Eigen::Matrix3d> root(pose.covariance);
       EXPECT_EQ(root.info(), Eigen::Success) << undone << ", sighting " << i << "\n" << pose.covariance;
       pose.covariance *= undone;
+    }
+  }
+}
+
+// What is kept of many landmarks may together be more than the pose allows, each by itself not. Knowing all
+// map errors exactly would leave a fiftieth of the pose's covariance; the sighting adds its own information.
+TEST(MapErrors, NoPoseIsMoreCertainThanByKnownErrors) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Random random(seed, "many landmarks");
+    std::vector<MapLandmark> map(12);
+    for (std::size_t i = 0; i < map.size(); ++i) {
+      map[i].key = i + 1;
+      map[i].at = {random.uniform(-15, 15), random.uniform(-15, 15)};
+      map[i].covariance = Eigen::Matrix2d::Identity() * 0.01;
+    }
+    PoseEstimate at{{}, Eigen::Vector3d(0.1, 0.1, 0.01).asDiagonal()};
+    MapErrors errors;
+    for (int k = 0; k < 200; ++k) {
+      if (random.bernoulli(0.1)) at.covariance *= random.uniform(0.3, 1);
+      const BodyMotion motion = twist_motion(0.1, 0, random.uniform(-0.3, 0.3), 1, {});
+      errors.predict(at.pose, motion.step);
+      at = predict_pose(at, motion);
+      const MapLandmark& landmark = map[random.uniform_index(map.size())];
+      const ExpectedSighting e = expect(at.pose, {}, landmark.at);
+      SeenLandmark s;
+      s.range = e.value[0], s.range_sd = 0.03, s.bearing = e.value[1], s.bearing_sd = 0.003;
+      const Eigen::Matrix3d most_information =
+          50 * at.covariance.inverse() + e.by_pose.transpose() * sensor_noise(s).inverse() * e.by_pose;
+      at = errors.correct_probably(at, s, {}, landmark, 1, random.bernoulli(0.5) ? 1 : 0.7);
+      const Eigen::Matrix3d root = Eigen::LLT<Eigen::Matrix3d>(most_information).matrixL();
+      const Eigen::Matrix3d ratio = root.transpose() * at.covariance * root;
+      const double least = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(ratio).eigenvalues()[0];
+      ASSERT_GT(least, 0.999) << "seed " << seed << ", sighting " << k;
     }
   }
 }
