@@ -60,7 +60,7 @@ class NewType : public testing::Test {
       {"stage": "load_dem", "files": ["dem.asc"], "crs": "local"},
       {"stage": "load_images", "cameras": "cameras.json"}, {"stage": "read_marks"},
       {"stage": "project_to_ground", "register_to_dem": false}, {"stage": "reject_implausible"},
-      {"stage": "reject_terrain_shadows"}, {"stage": "reject_rim_shadows"}, {"stage": "align_images"},
+      {"stage": "reject_terrain_shadows", "min_drop": 1}, {"stage": "reject_rim_shadows"}, {"stage": "align_images"},
       {"stage": "merge_observations"}, {"stage": "value_landmarks"}]})",
                                             stages);
     job.pipeline.base_folder = folder;

@@ -83,6 +83,8 @@ double profile_depth(const DegradationProfiles& worn, const DegradationProfiles:
   return (crest - worn.height(blur, 0.06 * state.crest)) / state.crest;
 }
 
+constexpr double kGoodMisfit = 0.5;  // expected of the profile that is right
+
 // Offsets of the crest from the law, whose scatter they sample to three standard deviations.
 constexpr int kOffsets = 13;
 constexpr double kOffsetStep = 0.03;
@@ -174,10 +176,12 @@ std::optional<CrestCorrection> crest_correction(const Terrain& terrain, const Gr
     }
   }
   const double best = *std::min_element(misfits.begin(), misfits.end());
+  // Heights that no profile fits, as of a pit without a rim, say less.
+  const double spread = std::max(1.0, best / kGoodMisfit);
   double total = 0, mean = 0, squares = 0;
   for (std::size_t i = 0; i < misfits.size(); ++i) {
-    const double fraction =
-        (i == 0 ? kUnresolved : (1 - kUnresolved) * chances[i] / depths) * std::exp(best - misfits[i]);
+    const double fraction = (i == 0 ? kUnresolved : (1 - kUnresolved) * chances[i] / depths) *
+                            std::exp((best - misfits[i]) / spread);
     total += fraction, mean += fraction * growths[i], squares += fraction * growths[i] * growths[i];
   }
   mean /= total, squares /= total;
