@@ -76,12 +76,14 @@ Eigen::Matrix<double, 3, 2> limit_correlation(const Eigen::Matrix<double, 3, 2>&
 
 void MapErrors::predict(const Pose2& before, const Pose2& step) {
   driven_ += step.at().norm();
+  is_limited_ = false;
   if (errors_.empty()) return;
   const Eigen::Matrix3d by_pose = motion_jacobians(before, step).by_pose;
   for (Entry& e : errors_) e.covariance = by_pose * e.covariance;
 }
 
 void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
+  is_limited_ = false;
   if (errors_.empty()) return;
   const Eigen::Matrix3d change =
       after.covariance * (before.covariance + 1e-12 * Eigen::Matrix3d::Identity()).inverse();
@@ -93,6 +95,8 @@ void MapErrors::follow(const PoseEstimate& before, const PoseEstimate& after) {
 // What was forgotten or mixed, or a line that swings about another point, may leave more; the pose would then
 // become certain by its own errors.
 void MapErrors::limit_jointly(const Eigen::Matrix3d& pose) {
+  if (is_limited_) return;
+  is_limited_ = true;
   Eigen::Matrix3d explained = Eigen::Matrix3d::Zero();
   for (const Entry& e : errors_) explained += e.covariance * e.information * e.covariance.transpose();
   const Eigen::LLT<Eigen::Matrix3d> root(pose);

@@ -60,6 +60,7 @@ class MapErrors {
   void limit_jointly(const Eigen::Matrix3d& pose);
 
   double memory_, driven_ = 0;
+  bool is_limited_ = false;    // since the last prediction; corrections keep what the pose allows
   std::vector<Entry> errors_;  // by key
 };
 
