@@ -28,6 +28,7 @@ double matched_fraction(const std::vector<Match>& matches) {
 
 ChanceFraction make_chance_fraction(LandmarkMatcher matcher) {
   const auto calls = std::make_shared<int>(0);
+  matcher.leave_doubt_to_copies();  // the filter learns from the same sets
   return [calls, matcher = std::make_shared<LandmarkMatcher>(std::move(matcher))](
              const SightingSet& seen, const PoseEstimate& at, std::span<const Match> matches) {
     matcher->observe(seen);

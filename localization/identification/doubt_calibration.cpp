@@ -13,7 +13,7 @@ namespace {
 constexpr double kGate = 9.21;      // chi-square of two numbers, 0.99
 constexpr double kMaxChance = 0.2;  // sightings in a gate by chance: more say nothing
 // Expected sightings that count as seen before any is known. One landmark stays in view for some ten sets.
-constexpr double kPrior = 20;
+constexpr double kPrior = 10;
 
 // Returns whether a sighting may show a landmark of this expected range and bearing. `area`: of the gate,
 // metres times radians.

@@ -104,6 +104,7 @@ double LandmarkMatcher::landmarks_in_view(const SightingSet& seen, const Pose2& 
 // one. Sightings with identities say which landmark they show, whatever its confidence.
 void LandmarkMatcher::learn_doubt(std::span<const Match> matches, const SightingSet& seen,
                                   const PoseEstimate& robot, const LandmarkGrid& map) {
+  if (!learns_doubt_) return;
   std::vector<LandmarkKey> shown;
   bool is_supported = false;
   for (std::size_t k = 0; k < matches.size(); ++k) {

@@ -79,6 +79,9 @@ class LandmarkMatcher {
     return waymark::localization::candidates(seen, robot_from_sensor, robot, map, scales_, options_);
   }
 
+  /// Makes learn() leave doubtful landmarks to the copies of this matcher, so that a set counts once.
+  void leave_doubt_to_copies() { learns_doubt_ = false; }
+
   const FeatureScales& scales() const { return scales_; }
   /// Returns the options; `clutter` is the estimated density over the rate of detection, `doubt_factors` what
   /// was learnt of doubtful landmarks.
@@ -95,6 +98,7 @@ class LandmarkMatcher {
   IdentificationOptions options_;
   ClutterEstimate clutter_;
   std::shared_ptr<DoubtCalibration> doubt_ = std::make_shared<DoubtCalibration>();
+  bool learns_doubt_ = true;
   double min_clutter_;
   std::vector<TypeId> seen_types_;  // of any sighting so far
   bool any_type_ = false;           // a sighting had no type, so it may be of any

@@ -319,7 +319,10 @@ void EkfSlam::update_existence(const SightingSet& seen, std::span<const SlamCand
     if (by_views && counts) missed_.add(look_at(seen, candidate, found[i]));
     // A landmark with an identity exists: a misread identity is rarer than a missed detection.
     if (!counts || found[i] || (options_.identification.use_identities && l.key && l.matches > 0)) continue;
-    by_views ? revise_by_views(l, missed_.evidence(i)) : void(l.log_odds += unseen);
+    if (by_views)
+      revise_by_views(l, missed_.evidence(i));
+    else
+      l.log_odds += unseen;
     if (l.log_odds < options_.dropped) remove(l);
   }
 }

@@ -138,7 +138,7 @@ TEST(CloudPoles, NothingIsFoundInNothing) {
   EXPECT_TRUE(find_poles(scan({.posts = {}, .boxes = {{{-60, 5}, {60, 6}, 8}}}, 1)).empty());  // a wall
 }
 
-// Two vans with a gap between them, and a house front behind, of which the gap shows a strip.
+// Two vans with a gap between them, and a house front behind; the gap shows a strip of it.
 Street street_with_gap(double width) {
   return {.posts = {},
           .boxes = {

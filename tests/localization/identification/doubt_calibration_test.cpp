@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kDoubtful = 0.2, kViewRange = 15, kHalfView = 1.5;
 
-/// A map of doubtful landmarks of type 0, of which every `period`-th exists, seen from poses in its middle.
+/// A map of doubtful landmarks of type 0 where every `period`-th exists, seen from poses in its middle.
 class DoubtfulWorld {
  public:
   DoubtfulWorld(int period, double confidence = kDoubtful) : period_(period) {
