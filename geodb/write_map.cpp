@@ -12,13 +12,13 @@
 #include "core/error.hpp"
 #include "geodb/geopackage/crs_table.hpp"
 #include "geodb/geopackage/dem_coverage.hpp"
-#include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/geopackage/migrations.hpp"
 #include "geodb/geopackage/provenance.hpp"
 #include "geodb/geopackage/type_catalogue.hpp"
 #include "geodb/layers/evidence.hpp"
 #include "geodb/layers/landmark_layout.hpp"
+#include "geodb/layers/landmark_rows.hpp"
 #include "geodb/layers/largest_index.hpp"
 #include "geodb/layers/layer_style.hpp"
 #include "geodb/replace_map.hpp"
@@ -139,9 +139,9 @@ class MapWriter {
     const Envelope& extent = (*statistics_)[old_id].extent;
     orders_.emplace(old_id, LandmarkOrder(*contents_, old_id, extent, max_in_memory_));
     database_->execute(layout.create_table());
-    insert_rows(layout, old_id);
     if ((*statistics_)[old_id].count >= kLarge)
       create_largest_indexes(*database_, layout, (*statistics_)[old_id].largest);
+    insert_rows(layout, old_id);
     create_uid_index(type.name);
     create_edit_triggers(*database_, type.name);
     create_spatial_index(*database_, type.name);
@@ -162,17 +162,17 @@ class MapWriter {
   }
 
   void insert_rows(const LandmarkLayout& layout, TypeId old_id) {
-    sqlite::Statement insert = database_->prepare(layout.insert());
+    LandmarkRows rows(*database_, layout, srs_id_);
     const std::span<const Landmark> in_memory = contents_->landmarks;
-    orders_.at(old_id).visit([&](const Landmark& landmark, std::int64_t row_index) {
-      const PointBlob geometry = point_blob(landmark.position.xyz, srs_id_);
-      layout.bind(insert, row_at(old_id, row_index), landmark, geometry);
-      insert.run();
-      const std::less<const Landmark*> before;
-      if (!before(&landmark, in_memory.data()) && before(&landmark, in_memory.data() + in_memory.size()))
-        row_index_[static_cast<std::size_t>(&landmark - in_memory.data())] =
-            static_cast<std::uint32_t>(row_index);
-    });
+    orders_.at(old_id).visit(
+        [&](const Landmark& landmark, std::int64_t row_index) {
+          rows.add(row_at(old_id, row_index), landmark);
+          const std::less<const Landmark*> before;
+          if (!before(&landmark, in_memory.data()) && before(&landmark, in_memory.data() + in_memory.size()))
+            row_index_[static_cast<std::size_t>(&landmark - in_memory.data())] =
+                static_cast<std::uint32_t>(row_index);
+        },
+        [&] { rows.flush(); });
   }
 
   std::int64_t row_at(TypeId old_id, std::int64_t row_index) const {

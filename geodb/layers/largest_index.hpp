@@ -44,8 +44,7 @@ class LargestValues {
 void add_landmark(LargestValues& values, const LandmarkLayout& layout, const Landmark& landmark);
 
 /// Creates a partial index of each column of numbers, over the rows with its largest values. To be called
-/// when the rows are there: an insertion opens every index, which takes four times as long as a scan per
-/// index.
+/// before LandmarkRows inserts the rows: each index of a full table costs a scan of it.
 void create_largest_indexes(const sqlite::Database& database, const LandmarkLayout& layout,
                             const LargestValues& values);
 

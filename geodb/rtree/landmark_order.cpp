@@ -71,7 +71,8 @@ LandmarkOrder::Rows LandmarkOrder::read_rows(const HilbertRange& range) const {
   return rows;
 }
 
-void LandmarkOrder::visit(const std::function<void(const Landmark&, std::int64_t)>& take) const {
+void LandmarkOrder::visit(const std::function<void(const Landmark&, std::int64_t)>& take,
+                          const std::function<void()>& before_release) const {
   std::int64_t row_index = 0;
   for (const HilbertRange& range : ranges_) {
     const Rows rows = read_rows(range);
@@ -79,6 +80,7 @@ void LandmarkOrder::visit(const std::function<void(const Landmark&, std::int64_t
       fetch_ahead(rows.all, i);
       take(*rows.all[i].landmark, row_index++);
     }
+    if (before_release) before_release();
   }
 }
 

@@ -16,8 +16,10 @@ class LandmarkOrder {
   /// `contents` must outlive it.
   LandmarkOrder(const MapContents& contents, TypeId type, const Envelope& extent, std::size_t max_in_memory);
 
-  /// Calls `take` for all landmarks with their index in the order, from 0.
-  void visit(const std::function<void(const Landmark&, std::int64_t row_index)>& take) const;
+  /// Calls `take` for all landmarks with their index in the order, from 0; calls `before_release` before the
+  /// landmarks taken so far disappear.
+  void visit(const std::function<void(const Landmark&, std::int64_t row_index)>& take,
+             const std::function<void()>& before_release = {}) const;
   /// Calls `take` for the observations of landmarks in parts, in the order of their landmarks, with the
   /// landmark's index.
   void visit_evidence(const std::function<void(const Observation&, std::int64_t row_index)>& take) const;

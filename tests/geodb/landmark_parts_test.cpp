@@ -123,6 +123,27 @@ TEST(LandmarkParts, GiveTheSameBytesForEveryDivision) {
   EXPECT_THAT(validate_map(folder / "map.gpkg"), testing::IsEmpty());
 }
 
+// A large map has indexes of its largest values, and its rows are inserted in groups that end with a range.
+TEST(LandmarkParts, GiveTheSameBytesToALargeMap) {
+  const TemporaryFolder folder;
+  MapContents whole = held(60'000);
+  whole.observations.clear();
+  MapContents contents = without_landmarks(whole);
+  std::string first;
+  for (const std::size_t max_in_memory : {7'000u, 100'000u}) {
+    Parts parts(whole, 3);
+    contents.parts = parts.parts();
+    write_map(folder / "map.gpkg", contents, {.max_landmarks_in_memory = max_in_memory});
+    const std::string bytes = file_bytes(folder / "map.gpkg");
+    if (first.empty()) first = bytes;
+    EXPECT_TRUE(bytes == first) << max_in_memory << " at once";
+  }
+  EXPECT_EQ(query_text(folder / "map.gpkg", "PRAGMA integrity_check"), "ok");
+  EXPECT_EQ(query_text(folder / "map.gpkg",
+                       "SELECT count(*) FROM sqlite_schema WHERE name = 'lamp_post_height_largest'"),
+            "1");
+}
+
 TEST(LandmarkParts, GiveTheSameRowsAsLandmarksInMemory) {
   const TemporaryFolder folder;
   const MapContents whole = held(2000);
