@@ -19,8 +19,8 @@ std::string upper(std::string_view text) {
   return result;
 }
 
-// As SQLite decides which values a column prefers (datatype3.html, 3.1), with dates as texts. Texts compare by
-// bytes, as in SQLite; by the rules of a language an index takes twice as long.
+// As SQLite decides which values a column prefers (datatype3.html, 3.1), with dates as texts. Texts compare
+// by bytes, as in SQLite; by the rules of a language an index takes twice as long.
 Column column_of(const std::string& name, std::string_view declared) {
   const std::string type = upper(declared);
   const auto has = [&](const char* word) { return type.find(word) != std::string::npos; };

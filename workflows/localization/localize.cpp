@@ -19,6 +19,7 @@
 #include "localization/detectors/detected_types.hpp"
 #include "localization/robot_log.hpp"
 #include "workflows/localization/drive_layers.hpp"
+#include "workflows/localization/exchanged_sides.hpp"
 #include "workflows/localization/localize_method.hpp"
 #include "workflows/localization/log_without_landmarks.hpp"
 #include "workflows/localization/mirrored_log.hpp"
@@ -223,6 +224,20 @@ std::string find_mirrored(const LocalizeTask& task, const OpenedMap& map, Locali
                         run(mirror_log(start, MirroredPart::motion)));
 }
 
+/// Returns a warning if left and right of the log are exchanged, by the map or by its odometry; else empty.
+std::string find_exchanged_sides(const LocalizeRequest& request, const LocalizeTask& task,
+                                 LocalizeMethod& method, const localization::Track& track,
+                                 const SensorProfile* sensor) {
+  // SLAM without a start maps the mirrored world as well as the true one.
+  const bool can_be_mirrored = !method.updates_map() || method.start() == StartPolicy::required;
+  if (task.start && request.map != "none" && can_be_mirrored && fits_badly(track)) {
+    const OpenedMap again =
+        open_robot_map(request.map, sensor, !method.requires_map(), request.min_confidence);
+    if (std::string fault = find_mirrored(task, again, method); !fault.empty()) return fault;
+  }
+  return exchanged_sides_warning(task.log, poses_by_odometry(task.log), "the odometry");
+}
+
 /// Warns of scans without usable ranges, and of a track that saw no landmark.
 void warn_if_blind(const localization::RobotLog& log, const localization::Track& track,
                    const LocalizeRequest& request, const Callbacks& callbacks) {
@@ -303,14 +318,10 @@ LocalizeResult localize(const LocalizeRequest& request, const Callbacks& callbac
                         .settings = options_as_text(option_table(options)),
                         .settings_json = task.settings_json};
   if (method.name() != "odometry") warn_if_blind(log, result.track, request, callbacks);
-  // SLAM without a start maps the mirrored world as well as the true one.
-  const bool can_be_mirrored = !method.updates_map() || method.start() == StartPolicy::required;
-  if (task.start && request.map != "none" && can_be_mirrored && fits_badly(result.track)) {
-    const OpenedMap again =
-        open_robot_map(request.map, sensor.get(), !method.requires_map(), request.min_confidence);
-    if (const std::string fault = find_mirrored(task, again, method); !fault.empty())
+  if (method.name() != "odometry")
+    if (const std::string fault = find_exchanged_sides(request, task, method, result.track, sensor.get());
+        !fault.empty())
       callbacks.warning(fault + ": " + request.log);
-  }
   if (!request.output.empty()) write_track(request, result.track, map);
   if (!request.layers.empty()) write_drive_layers(request.layers, log, result.track, map.frame);
   return result;

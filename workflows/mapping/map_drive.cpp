@@ -17,8 +17,8 @@
 #include "geodb/write_map.hpp"
 #include "localization/detectors/scan_landmarks.hpp"
 #include "localization/robot_log.hpp"
+#include "workflows/localization/exchanged_sides.hpp"
 #include "workflows/localization/log_without_landmarks.hpp"
-#include "workflows/localization/mirrored_log.hpp"
 #include "workflows/mapping/drive_landmarks.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
@@ -26,9 +26,6 @@
 
 namespace waymark::workflows {
 namespace {
-
-constexpr std::int64_t kMinRecurring = 100, kMinObjects = 10;  // sightings and objects for a comparison
-constexpr std::int64_t kFewerTenths = 8;  // of the objects as written, at most, once the sides are exchanged
 
 /// Puts the poses of a file in the place of those of the log.
 void read_poses(DriveMapRequest& request, localization::RobotLog& log) {
@@ -75,36 +72,6 @@ std::vector<std::string> types_of(const localization::NamedDetectors& named) {
       if (const auto* const detector = localization::scan_detectors().find(name))
         types.insert(detector->types.begin(), detector->types.end());
   return {types.begin(), types.end()};
-}
-
-/// How often the beginning of a drive sees its objects again.
-struct Recurrence {
-  std::int64_t sightings = 0, objects = 0;
-};
-
-Recurrence recurrence(const localization::RobotLog& log, const std::vector<localization::StampedPose>& poses,
-                      const localization::ScanDetector& detect, const LocalFrame& frame,
-                      const DriveMappingOptions& options) {
-  const DriveLandmarks made =
-      landmarks_of_looks(looks_of_drive(log, poses, detect, "start"), all_types(), frame, options);
-  return {std::ssize(made.evidence), std::ssize(made.landmarks) + made.improbable};
-}
-
-/// Returns a warning if the sightings of the first looks fall on far fewer objects once left and right are
-/// exchanged. Empty otherwise, and with few sightings.
-std::string exchanged_sides(const localization::RobotLog& log, const localization::ScanDetector& detect,
-                            const LocalFrame& frame, const DriveMappingOptions& options) {
-  const localization::RobotLog start = beginning_of(log);
-  const Recurrence written = recurrence(start, log.truth, detect, frame, options);
-  if (written.sightings < kMinRecurring || written.objects < kMinObjects) return {};
-  const Recurrence other =
-      recurrence(mirror_log(start, MirroredPart::sensors), log.truth, detect, frame, options);
-  if (2 * other.sightings < written.sightings || 10 * other.objects >= kFewerTenths * written.objects)
-    return {};
-  return fmt::format(
-      "the scans fit the poses if left and right are exchanged in bearings and beams: the first {} sightings "
-      "are then of {} objects, as written of {}; y and bearings are positive to the left",
-      written.sightings, other.objects, written.objects);
 }
 
 }  // namespace
@@ -166,7 +133,7 @@ DriveMapResult map_drive(const DriveMapRequest& given, const Callbacks& callback
   }
   if (const std::string fault = unusable_ranges_warning(log); detect && !fault.empty())
     callbacks.warning(fault + ": " + request.log);
-  if (const std::string fault = exchanged_sides(log, detect, frame, options); !fault.empty())
+  if (const std::string fault = exchanged_sides_warning(log, log.truth, "the poses"); !fault.empty())
     callbacks.warning(fault + ": " + request.log);
   if (contents.landmarks.empty())
     callbacks.warning(fmt::format(

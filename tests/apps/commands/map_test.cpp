@@ -141,7 +141,7 @@ TEST_F(MadeHall, ScansWithLeftAndRightExchangedAreNamed) {
       waymark({"map", log([](nlohmann::json& scan) { std::ranges::reverse(scan["ranges"]); }), "-o",
                folder_ / "m.gpkg"});
   EXPECT_EQ(said.code, 0);
-  EXPECT_THAT(said.err, testing::HasSubstr("if left and right are exchanged in bearings and beams"));
+  EXPECT_THAT(said.err, testing::HasSubstr("scans fit the poses if left and right are exchanged"));
 }
 
 TEST_F(MadeHall, RangesInMillimetresAreNamed) {
