@@ -12,19 +12,20 @@
 #include "core/error.hpp"
 #include "geodb/geopackage/crs_table.hpp"
 #include "geodb/geopackage/dem_coverage.hpp"
+#include "geodb/geopackage/geometry_blob.hpp"
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/geopackage/migrations.hpp"
 #include "geodb/geopackage/provenance.hpp"
 #include "geodb/geopackage/type_catalogue.hpp"
 #include "geodb/layers/evidence.hpp"
 #include "geodb/layers/landmark_layout.hpp"
-#include "geodb/layers/landmark_rows.hpp"
 #include "geodb/layers/largest_index.hpp"
 #include "geodb/layers/layer_style.hpp"
 #include "geodb/replace_map.hpp"
 #include "geodb/rtree/landmark_order.hpp"
 #include "geodb/rtree/packed_rtree.hpp"
 #include "geodb/rtree/rejected_order.hpp"
+#include "geodb/sqlite/row_inserter.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 #include "landmarks/uid_index.hpp"
 
@@ -162,11 +163,16 @@ class MapWriter {
   }
 
   void insert_rows(const LandmarkLayout& layout, TypeId old_id) {
-    LandmarkRows rows(*database_, layout, srs_id_);
+    std::vector<std::string> columns;
+    for (const LandmarkColumn& column : layout.columns()) columns.push_back(quote_identifier(column.name));
+    sqlite::RowInserter rows(*database_, layout.type().name, columns);
+    std::vector<PointBlob> geometries(rows.max_rows());
     const std::span<const Landmark> in_memory = contents_->landmarks;
     orders_.at(old_id).visit(
         [&](const Landmark& landmark, std::int64_t row_index) {
-          rows.add(row_at(old_id, row_index), landmark);
+          PointBlob& geometry = geometries[rows.row()] = point_blob(landmark.position.xyz, srs_id_);
+          layout.bind(rows.statement(), row_at(old_id, row_index), landmark, geometry, rows.before_first());
+          rows.end_row();
           const std::less<const Landmark*> before;
           if (!before(&landmark, in_memory.data()) && before(&landmark, in_memory.data() + in_memory.size()))
             row_index_[static_cast<std::size_t>(&landmark - in_memory.data())] =

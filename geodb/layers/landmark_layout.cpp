@@ -142,12 +142,11 @@ std::string LandmarkLayout::create_table() const {
   return fmt::format("CREATE TABLE {} (\n{}\n)", quote_identifier(type_->name), fmt::join(lines, ",\n"));
 }
 
-std::string LandmarkLayout::insert(std::size_t rows) const {
-  const std::vector<std::string_view> values(columns_.size(), "?");
-  const std::vector<std::string> lines(rows, fmt::format("({})", fmt::join(values, ", ")));
-  // To undo several rows, SQLite would copy every page before it changes it.
-  return fmt::format("INSERT {}INTO {} ({}) VALUES {}", rows == 1 ? "" : "OR FAIL ",
-                     quote_identifier(type_->name), names_of(columns_, ""), fmt::join(lines, ", "));
+std::string LandmarkLayout::insert() const {
+  std::string placeholders = "?";
+  for (std::size_t i = 1; i < columns_.size(); ++i) placeholders += ", ?";
+  return fmt::format("INSERT INTO {} ({}) VALUES ({})", quote_identifier(type_->name), names_of(columns_, ""),
+                     placeholders);
 }
 
 std::string LandmarkLayout::update() const {
@@ -163,8 +162,8 @@ std::string LandmarkLayout::select(std::string_view where) const {
 }
 
 void LandmarkLayout::bind(sqlite::Statement& statement, std::int64_t row, const Landmark& landmark,
-                          std::span<const std::byte> geometry, std::size_t row_of_statement) const {
-  int parameter = static_cast<int>(row_of_statement * columns_.size());
+                          std::span<const std::byte> geometry, int before_first) const {
+  int parameter = before_first;
   statement.bind(++parameter, row);
   statement.bind(++parameter, geometry);
   statement.bind(++parameter, std::string_view(landmark.uid));

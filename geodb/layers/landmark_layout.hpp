@@ -30,14 +30,14 @@ class LandmarkLayout {
   std::span<const LandmarkColumn> columns() const { return columns_; }
 
   std::string create_table() const;
-  /// Parameters are as bind() fills them. If an insertion of several rows fails, some may be there.
-  std::string insert(std::size_t rows = 1) const;
+  std::string insert() const;                        ///< parameters as bind() fills them
   std::string update() const;                        ///< same parameters; the row's id is unchanged
   std::string select(std::string_view where) const;  ///< of table t; `where` may join and order
 
-  /// Binds a landmark to a statement; valid until `landmark` or `geometry` changes.
+  /// Binds a landmark to a statement, to the parameters after `before_first`; valid until `landmark` or
+  /// `geometry` changes.
   void bind(sqlite::Statement& statement, std::int64_t row, const Landmark& landmark,
-            std::span<const std::byte> geometry, std::size_t row_of_statement = 0) const;
+            std::span<const std::byte> geometry, int before_first = 0) const;
   Landmark read(const sqlite::Statement& row) const;
   /// Returns the value of each column as bind() stores it; NaN for NULL, geometries and texts.
   std::vector<double> numbers(const Landmark& landmark) const;

@@ -14,8 +14,10 @@
 namespace waymark::geodb {
 namespace {
 
+constexpr std::string_view kNameEnd = "_largest";
+
 std::string index_name(std::string_view table, std::string_view column) {
-  return fmt::format("{}_{}_largest", table, column);
+  return fmt::format("{}_{}{}", table, column, kNameEnd);
 }
 
 constexpr const char* kKnown = " IS NOT NULL";
@@ -72,6 +74,10 @@ void create_largest_indexes(const sqlite::Database& database, const LandmarkLayo
                                    quote_identifier(index_name(table, column)), quote_identifier(table),
                                    quote_identifier(column), condition_text(column, values.threshold(i))));
   }
+}
+
+bool is_largest_index(std::string_view name) {
+  return name.ends_with(kNameEnd);
 }
 
 LargestConditions largest_conditions(const sqlite::Database& database, std::string_view table,

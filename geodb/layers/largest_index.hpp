@@ -44,9 +44,12 @@ class LargestValues {
 void add_landmark(LargestValues& values, const LandmarkLayout& layout, const Landmark& landmark);
 
 /// Creates a partial index of each column of numbers, over the rows with its largest values. To be called
-/// before LandmarkRows inserts the rows: each index of a full table costs a scan of it.
+/// before a RowInserter fills the table: each index of a full table costs a scan of it.
 void create_largest_indexes(const sqlite::Database& database, const LandmarkLayout& layout,
                             const LargestValues& values);
+
+/// Returns whether an index has a name as create_largest_indexes() gives.
+bool is_largest_index(std::string_view name);
 
 /// Conditions of the rows with the largest values of a column, the larger ones first. SQLite uses the index
 /// if a query has the condition `indexed`.

@@ -7,6 +7,7 @@
 #include "core/error.hpp"
 #include "geodb/geopackage/layer_registration.hpp"
 #include "geodb/geopackage/migrations.hpp"
+#include "geodb/layers/largest_index.hpp"
 #include "geodb/open_map.hpp"
 #include "geodb/postgres/connection.hpp"
 #include "geodb/postgres/row_copy.hpp"
@@ -170,7 +171,7 @@ void rebuild(const Connection& server, const sqlite::Database& map) {
   const Connection::Rows definitions =
       server.rows("SELECT kind, name, sql FROM waymark_definition ORDER BY position");
   const auto is_early = [](const auto& row) {
-    return row[0] == "table" || is_rtree(*row[0]) ||
+    return row[0] == "table" || is_rtree(*row[0]) || (row[0] == "index" && is_largest_index(*row[1])) ||
            (row[0] == "trigger" && row[1]->starts_with("rtree_image_"));
   };
   for (const auto& row : definitions)

@@ -2,12 +2,14 @@
 #include "geodb/postgres/row_copy.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <bit>
 #include <cstring>
 
 #include "core/error.hpp"
 #include "geodb/geopackage/geometry_blob.hpp"
+#include "geodb/sqlite/row_inserter.hpp"
 #include "geodb/sqlite/sql_text.hpp"
 
 namespace waymark::geodb::postgres {
@@ -127,26 +129,23 @@ void copy_rows(const sqlite::Database& map, const TableLayout& table, const Conn
 
 void fetch_rows(const Connection& server, const TableLayout& table, const sqlite::Database& map,
                 std::int32_t srs_id) {
-  std::string select, insert, values;
-  const auto add = [&](const std::string& selected, const std::string& name) {
-    select += (select.empty() ? "" : ", ") + selected;
-    insert += (insert.empty() ? "" : ", ") + name;
-    values += values.empty() ? "?" : ", ?";
-  };
-  if (table.has_row_number) add("row_number", "rowid");
-  for (const Column& column : table.columns)
-    add(column.kind == ValueKind::geometry ? "ST_AsBinary(" + quoted(column.name) + ", 'NDR')"
-                                           : quoted(column.name),
-        quote_identifier(column.name));
-  sqlite::Statement row = map.prepare(
-      fmt::format("INSERT INTO {} ({}) VALUES ({})", quote_identifier(table.name), insert, values));
+  std::vector<std::string> selected, inserted;
+  if (table.has_row_number) selected.emplace_back("row_number"), inserted.emplace_back("rowid");
+  for (const Column& column : table.columns) {
+    selected.push_back(column.kind == ValueKind::geometry ? "ST_AsBinary(" + quoted(column.name) + ", 'NDR')"
+                                                          : quoted(column.name));
+    inserted.push_back(quote_identifier(column.name));
+  }
+  sqlite::RowInserter rows(map, table.name, inserted);
+  std::vector<std::string> bytes(rows.max_rows() * inserted.size());  // of the rows that wait
   const std::size_t first = table.has_row_number ? 1 : 0;
-  std::vector<std::string> blobs(table.columns.size());
-  server.read_copy(fmt::format("COPY (SELECT {} FROM {} ORDER BY {}) TO STDOUT (FORMAT binary)", select,
-                               quoted(table.name), quoted(table.key)),
+  server.read_copy(fmt::format("COPY (SELECT {} FROM {} ORDER BY {}) TO STDOUT (FORMAT binary)",
+                               fmt::join(selected, ", "), quoted(table.name), quoted(table.key)),
                    [&](const Connection::Fields& fields) {
+                     sqlite::Statement& row = rows.statement();
                      for (std::size_t i = 0; i < fields.size(); ++i) {
-                       const int parameter = static_cast<int>(i) + 1;
+                       const int parameter = rows.before_first() + static_cast<int>(i) + 1;
+                       std::string& own = bytes[rows.row() * inserted.size() + i];
                        const ValueKind kind = i < first ? ValueKind::integer : table.columns[i - first].kind;
                        if (!fields[i])
                          row.bind(parameter, nullptr);
@@ -155,16 +154,16 @@ void fetch_rows(const Connection& server, const TableLayout& table, const sqlite
                        else if (kind == ValueKind::real)
                          row.bind(parameter, std::bit_cast<double>(from_big_endian(*fields[i])));
                        else if (kind == ValueKind::text)
-                         row.bind(parameter, *fields[i]);
+                         row.bind(parameter, own = *fields[i]);
                        else if (kind == ValueKind::bytes)
-                         row.bind(parameter, std::as_bytes(std::span(*fields[i])));
-                       else {
-                         blobs[i - first] = geopackage_blob(*fields[i], srs_id);
-                         row.bind(parameter, std::as_bytes(std::span(blobs[i - first])));
-                       }
+                         row.bind(parameter, std::as_bytes(std::span(own = *fields[i])));
+                       else
+                         row.bind(parameter,
+                                  std::as_bytes(std::span(own = geopackage_blob(*fields[i], srs_id))));
                      }
-                     row.run();
+                     rows.end_row();
                    });
+  rows.flush();
 }
 
 }  // namespace waymark::geodb::postgres
