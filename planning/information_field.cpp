@@ -76,8 +76,11 @@ void visit_information(const localization::Pose2& pose, const localization::Land
 
 void visit_directions(const Eigen::Vector2d& at, int directions, const localization::LandmarkGrid& map,
                       const LandmarkSensing& sensing, const VisitDirections& visit) {
-  std::array<double, kHeadings> yaws{};
-  for (int h = 0; h < kHeadings; ++h) yaws[static_cast<std::size_t>(h)] = heading_pose(0, 0, h).yaw;
+  static const std::array<double, kHeadings> yaws = [] {
+    std::array<double, kHeadings> all{};
+    for (int h = 0; h < kHeadings; ++h) all[static_cast<std::size_t>(h)] = heading_pose(0, 0, h).yaw;
+    return all;
+  }();
   visit_seen(at, std::span(yaws).first(static_cast<std::size_t>(directions)), map, sensing, visit);
 }
 
@@ -129,15 +132,31 @@ void visit_cells(const RouteCells& cells, const std::vector<char>& passable,
 InformationField make_information_field(const RouteCells& cells, const std::vector<char>& passable,
                                         const localization::LandmarkGrid& map, const LandmarkSensing& sensing,
                                         const Advanced& advanced) {
-  InformationField field{cells, informative_headings(sensing), {}};
-  field.at.resize(static_cast<std::size_t>(cells.count() * field.headings));
+  InformationField field{cells, informative_headings(sensing), {}, {}};
+  const auto count = static_cast<std::size_t>(field.headings);
+  field.blocks.resize(static_cast<std::size_t>(cells.count()));
+  // Blocks of a row are numbered from 1 until all rows before it are known.
+  std::vector<std::vector<Information>> rows(static_cast<std::size_t>(cells.rows));
   visit_cells(
       cells, passable,
       [&](std::int64_t i) {
         const auto here = information_in_directions({cells.x(i), cells.y(i)}, field.headings, map, sensing);
-        std::copy_n(here.begin(), field.headings, field.at.begin() + i * field.headings);
+        if (std::ranges::none_of(here, [](const Information& seen) { return seen.landmarks > 0; })) return;
+        std::vector<Information>& row = rows[static_cast<std::size_t>(i / cells.columns)];
+        row.insert(row.end(), here.begin(), here.begin() + field.headings);
+        field.blocks[static_cast<std::size_t>(i)] = static_cast<std::uint32_t>(row.size() / count);
       },
       advanced);
+  field.at.resize(count);
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const auto before = static_cast<std::uint32_t>(field.at.size() / count) - 1;
+    field.at.insert(field.at.end(), rows[r].begin(), rows[r].end());
+    rows[r] = {};
+    for (std::int64_t c = 0; c < cells.columns; ++c)
+      if (auto& block =
+              field.blocks[r * static_cast<std::size_t>(cells.columns) + static_cast<std::size_t>(c)])
+        block += before;
+  }
   return field;
 }
 

@@ -71,14 +71,16 @@ inline int informative_headings(const LandmarkSensing& sensing) {
   return sensing.coverage.view < 360 ? kHeadings : 1;
 }
 
-/// Information in every cell and heading.
+/// Information in every cell and heading. Most cells of large maps see nothing: they share one entry.
 struct InformationField {
   RouteCells cells;
-  int headings = 1;  ///< 1: the sensor sees all round; else kHeadings
-  std::vector<Information> at;
+  int headings = 1;                   ///< 1: the sensor sees all round; else kHeadings
+  std::vector<std::uint32_t> blocks;  ///< by cell; block 0: nothing is seen
+  std::vector<Information> at;        ///< `headings` of each block
 
   const Information& get(std::int64_t cell, int heading) const {
-    return at[static_cast<std::size_t>(cell * headings + (headings == 1 ? 0 : heading))];
+    const std::size_t first = blocks[static_cast<std::size_t>(cell)] * static_cast<std::size_t>(headings);
+    return at[first + (headings == 1 ? 0 : static_cast<std::size_t>(heading))];
   }
 };
 /// Receives the fraction of a computation that is done, from one thread at a time; may throw to end it.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <deque>
 #include <limits>
@@ -29,28 +30,34 @@ std::int64_t neighbour(const RouteCells& cells, const std::vector<char>& passabl
   return to;
 }
 
+Moves::Moves(const RouteCells& cells, const std::vector<char>& passable) : open_(slot(cells.count())) {
+  for (int h = 0; h < kHeadings; ++h) {
+    offsets_[slot(h)] = kColumnStep[slot(h)] + kRowStep[slot(h)] * cells.columns;
+    lengths_[slot(h)] = step_length(cells, h);
+  }
+  // Where both cells of a step lie within the row, nothing else can stop it but obstacles.
+  for (std::int64_t row = 0; row < cells.rows; ++row)
+    for (int h = 0; h < kHeadings; ++h) {
+      const int dc = kColumnStep[slot(h)], dr = kRowStep[slot(h)];
+      if (row + dr < 0 || row + dr >= cells.rows) continue;
+      const std::int64_t first = dc < 0 ? 1 : 0, last = cells.columns - (dc > 0 ? 1 : 0);
+      const char *const here = passable.data() + row * cells.columns, *const beyond =
+                                                                          here + dr * cells.columns;
+      std::uint8_t* const open = open_.data() + row * cells.columns;
+      for (std::int64_t c = first; c < last; ++c)
+        open[c] |= static_cast<std::uint8_t>(
+            (beyond[c + dc] != 0 && (h % 2 == 0 || (here[c + dc] != 0 && beyond[c] != 0))) << h);
+    }
+}
+
 double turn_between(int from, int to) {
   const int eighths = std::abs(from - to) % kHeadings;
   return std::min(eighths, kHeadings - eighths) * std::numbers::pi / 4;
 }
 
-Symmetric3 step_belief(const RouteProblem& problem, const Symmetric3& covariance, std::int64_t to,
-                       int heading, double turn) {
-  static const std::array<double, kHeadings> east = [] {
-    std::array<double, kHeadings> all{};
-    for (int h = 0; h < kHeadings; ++h) all[slot(h)] = std::cos(h * std::numbers::pi / 4);
-    return all;
-  }();
-  const double length = step_length(problem.field.cells, heading);
-  const Symmetric3 predicted = predict(
-      covariance, {length, east[slot(heading)], east[slot((heading + 6) % kHeadings)], turn}, problem.noise);
-  const Symmetric3& j = problem.field.get(to, heading).rate;
-  return update(predicted,
-                {j.xx * length, j.xy * length, j.yy * length, j.xt * length, j.yt * length, j.tt * length});
-}
-
 std::vector<double> distances_to(const RouteCells& cells, const std::vector<char>& passable,
                                  const std::vector<std::int64_t>& goals) {
+  const Moves moves(cells, passable);
   std::vector<double> distance(slot(cells.count()), std::numeric_limits<double>::infinity());
   // Dijkstra without a heap: steps have two lengths, and what is appended after steps of one length never
   // decreases, so the nearest open cell is in front of one of two queues.
@@ -62,10 +69,10 @@ std::vector<double> distances_to(const RouteCells& cells, const std::vector<char
     const auto [d, cell] = open[second].front();
     open[second].pop_front();
     if (d > distance[slot(cell)]) continue;
-    for (int h = 0; h < kHeadings; ++h) {
-      const std::int64_t next = neighbour(cells, passable, cell, h);
-      if (next < 0) continue;
-      const double there = d + step_length(cells, h);
+    for (unsigned left = moves.from(cell); left != 0; left &= left - 1) {
+      const int h = std::countr_zero(left);
+      const std::int64_t next = moves.to(cell, h);
+      const double there = d + moves.length(h);
       if (there < distance[slot(next)])
         distance[slot(next)] = there, open[slot(h % 2)].emplace_back(there, next);
     }

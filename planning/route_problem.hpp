@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -53,12 +56,46 @@ inline double step_length(const RouteCells& cells, int heading) {
 std::int64_t neighbour(const RouteCells& cells, const std::vector<char>& passable, std::int64_t cell,
                        int heading);
 
+/// Steps to the neighbours of cells, as neighbour() has them, by one look-up.
+class Moves {
+ public:
+  Moves(const RouteCells& cells, const std::vector<char>& passable);
+
+  /// Returns the directions in which a cell can be left; bit h: neighbour() in direction h is not -1.
+  unsigned from(std::int64_t cell) const { return open_[slot(cell)]; }
+  /// Returns the neighbour in a direction in which the cell can be left.
+  std::int64_t to(std::int64_t cell, int heading) const { return cell + offsets_[slot(heading)]; }
+  double length(int heading) const { return lengths_[slot(heading)]; }  ///< metres, step_length()
+
+ private:
+  std::vector<std::uint8_t> open_;
+  std::array<std::int64_t, kHeadings> offsets_;
+  std::array<double, kHeadings> lengths_;
+};
+
 /// Returns the turn between two directions, radians, >= 0.
 double turn_between(int from, int to);
 
+/// Cosines of the directions; that of direction h + 6 is the sine of h.
+inline const std::array<double, kHeadings> kEast = [] {
+  std::array<double, kHeadings> all{};
+  for (int h = 0; h < kHeadings; ++h) all[slot(h)] = std::cos(h * std::numbers::pi / 4);
+  return all;
+}();
+
 /// Returns the covariance after one step between neighbouring cells.
-Symmetric3 step_belief(const RouteProblem& problem, const Symmetric3& covariance, std::int64_t to,
-                       int heading, double turn);
+inline Symmetric3 step_belief(const RouteProblem& problem, const Symmetric3& covariance, std::int64_t to,
+                              int heading, double turn) {
+  const double length = step_length(problem.field.cells, heading);
+  const Symmetric3 predicted =
+      predict(covariance, {length, kEast[slot(heading)], kEast[slot((heading + 6) % kHeadings)], turn},
+              problem.noise);
+  const Information& seen = problem.field.get(to, heading);
+  if (seen.landmarks == 0) return predicted;
+  const Symmetric3& j = seen.rate;
+  return update(predicted,
+                {j.xx * length, j.xy * length, j.yy * length, j.xt * length, j.yt * length, j.tt * length});
+}
 
 /// Returns the shortest distance over passable cells to the nearest of `goals` from every cell, metres;
 /// infinity if there is none. O(cells).

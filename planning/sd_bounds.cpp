@@ -3,13 +3,13 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <deque>
-#include <functional>
 #include <limits>
-#include <queue>
-#include <utility>
 
+#include "planning/bucket_queue.hpp"
 namespace waymark::planning {
 namespace {
 
@@ -64,16 +64,24 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const
   variance[slot(problem.from)] = start_variance(problem.start);
   std::deque<std::int64_t> open{problem.from};
   std::vector<char> is_open(slot(cells.count()), 0);
+  const Moves moves(cells, problem.passable);
+  const double max_variance = max_sd * max_sd;
+  std::array<double, kHeadings> noise{};
+  for (int h = 0; h < kHeadings; ++h) noise[slot(h)] = q * moves.length(h);
   while (!open.empty()) {
     const std::int64_t cell = open.front();
     open.pop_front();
     is_open[slot(cell)] = 0;
-    for (int h = 0; h < kHeadings; ++h) {
-      const std::int64_t next = neighbour(cells, problem.passable, cell, h);
-      if (next < 0 || far[slot(next)] > max_sd * max_sd) continue;
-      const double length = step_length(cells, h);
-      const double v = 1 / (1 / (variance[slot(cell)] + q * length) + best.rate[slot(next)] * length);
-      if (!(v <= max_sd * max_sd) || !(v < variance[slot(next)])) continue;
+    for (unsigned left = moves.from(cell); left != 0; left &= left - 1) {
+      const int h = std::countr_zero(left);
+      const std::int64_t next = moves.to(cell, h);
+      if (far[slot(next)] > max_variance) continue;
+      const double predicted = variance[slot(cell)] + noise[slot(h)];
+      const double gain = best.rate[slot(next)] * moves.length(h);
+      // Most steps are no better by far: the quotient is not needed.
+      if (variance[slot(next)] * (1 + predicted * gain) < predicted * (1 - 1e-12)) continue;
+      const double v = 1 / (1 / predicted + gain);
+      if (!(v <= max_variance) || !(v < variance[slot(next)])) continue;
       variance[slot(next)] = v;
       if (!is_open[slot(next)]) open.push_back(next), is_open[slot(next)] = 1;
     }
@@ -86,20 +94,22 @@ std::vector<double> cost_to_go(const RouteProblem& problem, double weight,
                                const std::vector<double>& min_sd) {
   const RouteCells& cells = problem.field.cells;
   std::vector<double> cost(slot(cells.count()), std::numeric_limits<double>::infinity());
-  using Entry = std::pair<double, std::int64_t>;
-  std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
+  BucketQueue open(0, 4 * cells.cell);
+  const Moves moves(cells, problem.passable);
   cost[slot(problem.to)] = 0;
-  open.emplace(0, problem.to);
+  open.push({0, static_cast<std::uint32_t>(problem.to), 0, 0});
   while (!open.empty()) {
-    const auto [there, cell] = open.top();
-    open.pop();
+    const QueueEntry first = open.pop();
+    const double there = first.key;
+    const std::int64_t cell = first.number;
     if (there > cost[slot(cell)] || !std::isfinite(min_sd[slot(cell)])) continue;
     const double per_metre = 1 + weight * min_sd[slot(cell)];
-    for (int h = 0; h < kHeadings; ++h) {
-      const std::int64_t before = neighbour(cells, problem.passable, cell, h);
-      if (before < 0) continue;
-      const double whole = there + step_length(cells, h) * per_metre;
-      if (whole < cost[slot(before)]) cost[slot(before)] = whole, open.emplace(whole, before);
+    for (unsigned left = moves.from(cell); left != 0; left &= left - 1) {
+      const int h = std::countr_zero(left);
+      const std::int64_t before = moves.to(cell, h);
+      const double whole = there + moves.length(h) * per_metre;
+      if (whole < cost[slot(before)])
+        cost[slot(before)] = whole, open.push({whole, static_cast<std::uint32_t>(before), 0, 0});
     }
   }
   return cost;

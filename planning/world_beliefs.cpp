@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/random.hpp"
 #include "planning/sd_bounds.hpp"
@@ -22,14 +23,17 @@ WorldBeliefs::WorldBeliefs(const Symmetric3& start, const Odometry& odometry,
                            const localization::LandmarkGrid& map, std::int64_t worlds, std::int64_t seed)
     : beliefs_(static_cast<std::size_t>(worlds), DriveBelief(start, odometry)),
       rivals_(std::make_shared<const Rivals>(map)) {
+  std::vector<std::vector<Draw>> all(static_cast<std::size_t>(worlds));
   for (std::int64_t world = 0; world < worlds; ++world) {
     Random random(static_cast<std::uint64_t>(seed * 1'000'003 + world));
-    std::vector<Draw>& draws = draws_.emplace_back();
+    std::vector<Draw>& draws = all[static_cast<std::size_t>(world)];
+    draws.reserve(map.size());
     for (std::size_t i = 0; i < map.size(); ++i) {
       const bool exists = random.uniform() < map[i].quality;
       draws.push_back({exists, random.uniform()});
     }
   }
+  draws_ = std::make_shared<const std::vector<std::vector<Draw>>>(std::move(all));
 }
 
 void WorldBeliefs::drive(const DriveStep& step) {
@@ -45,7 +49,7 @@ void WorldBeliefs::see(const localization::Pose2& pose, double length, const loc
         detection_probability(sensing.coverage, (landmark.at - pose.at()).norm(), landmark.diameter);
     if (!(detection > 0)) return;
     for (std::size_t world = 0; world < sums.size(); ++world) {
-      const Draw& draw = draws_[world][i];
+      const Draw& draw = (*draws_)[world][i];
       if (!draw.exists) continue;
       const double repeated = draw.visible < detection ? kRepeated : 0;
       const double recognised =

@@ -35,7 +35,7 @@ class WorldBeliefs {
   };
   std::vector<DriveBelief> beliefs_;
   std::shared_ptr<const Rivals> rivals_;
-  std::vector<std::vector<Draw>> draws_;  // per world and landmark
+  std::shared_ptr<const std::vector<std::vector<Draw>>> draws_;  // per world and landmark; copies share them
 };
 
 /// Returns the largest information per metre that any world can draw in each cell, as max_rate() has it: all

@@ -63,6 +63,24 @@ TEST(RouteProblem, DistancesEqualRelaxationToTheLastBit) {
   }
 }
 
+TEST(RouteProblem, MovesAreTheNeighbours) {
+  std::mt19937 random(12);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  for (int round = 0; round < 60; ++round) {
+    const RouteCells cells{.cell = 0.3, .columns = 1 + round % 7, .rows = 1 + round * 5 % 11};
+    std::vector<char> passable(slot(cells.count()));
+    for (char& p : passable) p = uniform(random) < 0.7 ? 1 : 0;
+    const Moves moves(cells, passable);
+    for (std::int64_t cell = 0; cell < cells.count(); ++cell)
+      for (int h = 0; h < kHeadings; ++h) {
+        const std::int64_t next = neighbour(cells, passable, cell, h);
+        ASSERT_EQ(moves.from(cell) >> h & 1U, next >= 0 ? 1U : 0U) << "round " << round;
+        EXPECT_TRUE(next < 0 || moves.to(cell, h) == next);
+        EXPECT_EQ(moves.length(h), step_length(cells, h));
+      }
+  }
+}
+
 TEST(RouteProblem, TurnsAreTheShorterWayRound) {
   EXPECT_EQ(turn_between(3, 3), 0);
   EXPECT_DOUBLE_EQ(turn_between(7, 1), std::numbers::pi / 2);

@@ -9,8 +9,10 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <set>
+#include <vector>
 
 #include "planning/sd_bounds.hpp"
 #include "tests/support/small_routes.hpp"
@@ -115,6 +117,72 @@ TEST(RouteSearch, OneLabelIsTheFirstOfItsCellAndHeading) {
     ASSERT_TRUE(route);
     EXPECT_EQ(route->cost, cost_with_one_label(problem, weight)) << "seed " << seed;
   }
+}
+
+/// The same search with a limit by one ordered list, which compares each label with all that were closed.
+std::optional<double> length_within(const RouteProblem& problem, const SigmaSearch& wanted) {
+  struct Open {
+    double cost;
+    std::int64_t cell;
+    int heading;
+    Symmetric3 covariance;
+    bool is_start;
+  };
+  std::multimap<double, Open> open;  // equal keys: in the order of insertion
+  std::map<std::int64_t, std::vector<Open>> closed;
+  const std::vector<double> to_go = distances_to(problem.field.cells, problem.passable, problem.to);
+  const double scale = (1 + wanted.tolerance) * (1 + wanted.tolerance);
+  const auto is_dominated = [&](const Open& label) {
+    int kept = 0;
+    for (const Open& other : closed[label.cell]) {
+      kept += other.heading == label.heading;
+      Symmetric3 earlier = other.covariance;
+      earlier.tt += problem.noise.yaw_per_radian * turn_between(other.heading, label.heading);
+      if (other.cost <= label.cost &&
+          (earlier == label.covariance || exceeds(label.covariance, earlier, scale)))
+        return true;
+    }
+    return kept >= wanted.labels;
+  };
+  for (int h = 0; h < kHeadings; ++h)
+    open.emplace(to_go[slot(problem.from)], Open{0, problem.from, h, problem.start, true});
+  while (!open.empty()) {
+    const Open label = open.begin()->second;
+    open.erase(open.begin());
+    if (is_dominated(label)) continue;
+    if (label.cell == problem.to) return label.cost;
+    closed[label.cell].push_back(label);
+    for (int h = 0; h < kHeadings; ++h) {
+      const std::int64_t next = neighbour(problem.field.cells, problem.passable, label.cell, h);
+      if (next < 0 || (label.is_start && h != label.heading)) continue;
+      const Symmetric3 p = step_belief(problem, label.covariance, next, h, turn_between(label.heading, h));
+      if (!(position_sd(p) <= wanted.max_sd)) continue;
+      const double cost = label.cost + step_length(problem.field.cells, h);
+      open.emplace(cost + to_go[slot(next)], Open{cost, next, h, p, false});
+    }
+  }
+  return {};
+}
+
+TEST(RouteSearch, ALimitedSearchEqualsOneOrderedListToTheLastBit) {
+  int refused = 0, longer = 0;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    RouteProblem problem = problem_of(31, 31, scattered_landmarks(seed), sensing(8, seed % 2 ? 360 : 120));
+    const double free = search_by_sigma(problem, {})->worst_sd;
+    for (const int labels : {1, 3})
+      for (const double part : {0.9, 0.7, 0.5}) {
+        const SigmaSearch wanted{.max_sd = part * free, .labels = labels};
+        const auto expected = length_within(problem, wanted);
+        const auto route = search_by_sigma(problem, wanted);
+        ASSERT_EQ(route.has_value(), expected.has_value()) << "seed " << seed;
+        refused += !route;
+        if (!route) continue;
+        EXPECT_EQ(route->length, *expected) << "seed " << seed;
+        longer += route->length > 60 * std::numbers::sqrt2 + 1e-9;
+      }
+  }
+  EXPECT_GT(refused, 3);  // the cases are not all trivial
+  EXPECT_GT(longer, 3);
 }
 
 TEST(RouteSearch, MaxCostDropsOnlyDearerRoutes) {

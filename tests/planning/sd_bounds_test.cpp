@@ -54,6 +54,52 @@ TEST(SdBounds, NoDriveIsBelow) {
   EXPECT_LT(closest, 1.2);
 }
 
+/// Relaxes every step until nothing changes, as the bound is defined.
+std::vector<double> sd_by_relaxation(const RouteProblem& problem, double max_sd) {
+  const RouteCells& cells = problem.field.cells;
+  const std::vector<double> rate = max_rate(problem.field);
+  std::vector<std::int64_t> known{problem.from};
+  for (std::int64_t i = 0; i < cells.count(); ++i)
+    if (rate[slot(i)] > 0) known.push_back(i);
+  const auto& noise = problem.noise;
+  const double q = std::min(noise.along_per_metre, noise.across_per_metre);
+  std::vector<double> far = distances_to(cells, std::vector<char>(slot(cells.count()), 1), known);
+  for (double& d : far) d *= 0.92387953, d = q * d + noise.yaw_per_metre * d * d * d / 3;
+  std::vector<double> variance(slot(cells.count()), kNoLimit);
+  variance[slot(problem.from)] = problem.start.xx;
+  for (bool changes = true; changes;) {
+    changes = false;
+    for (std::int64_t i = 0; i < cells.count(); ++i)
+      for (int h = 0; h < kHeadings; ++h) {
+        const std::int64_t next = neighbour(cells, problem.passable, i, h);
+        if (next < 0 || far[slot(next)] > max_sd * max_sd || !std::isfinite(variance[slot(i)])) continue;
+        const double length = step_length(cells, h);
+        const double v = 1 / (1 / (variance[slot(i)] + q * length) + rate[slot(next)] * length);
+        if (v <= max_sd * max_sd && v < variance[slot(next)]) variance[slot(next)] = v, changes = true;
+      }
+  }
+  for (std::size_t i = 0; i < variance.size(); ++i) variance[i] = std::sqrt(std::max(variance[i], far[i]));
+  return variance;
+}
+
+TEST(SdBounds, EqualRelaxation) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    RouteProblem problem = problem_of(31, 27, scattered_landmarks(seed), sensing(5, seed % 2 ? 90 : 360));
+    for (char& p : problem.passable) p = uniform(random) < 0.9;
+    problem.from = 400, problem.passable[400] = 1;
+    problem.start = {0.04, 0, 0.04, 0, 0, 0.001};
+    for (const double limit : {kNoLimit, 0.8, 0.3}) {
+      const std::vector<double> fast = relaxed_sd(problem, limit), slow = sd_by_relaxation(problem, limit);
+      for (std::size_t i = 0; i < fast.size(); ++i)
+        ASSERT_TRUE(fast[i] == slow[i] ||
+                    std::abs(fast[i] - slow[i]) < 1e-14)  // that of the start's variance
+            << "seed " << seed << ": " << fast[i] << ", " << slow[i];
+    }
+  }
+}
+
 TEST(SdBounds, FarFromInformationItIsTheStraightDrive) {
   RouteProblem problem =
       problem_of(201, 1, localization::LandmarkGrid(std::vector<localization::MapLandmark>{}), sensing(8));

@@ -27,8 +27,9 @@ int LegPlanner::max_searches() const {
 }
 
 void LegPlanner::begin_leg(std::int64_t from, std::int64_t to) {
+  if (problem.to_go.empty() || problem.to != to)
+    problem.to_go = planning::distances_to(problem.field.cells, problem.passable, to);
   problem.from = from, problem.to = to;
-  problem.to_go = planning::distances_to(problem.field.cells, problem.passable, to);
   problem.min_sd.clear();
 }
 
@@ -67,14 +68,15 @@ Route LegPlanner::cheapest(double weight) {
 }
 
 /// Returns routes that weigh the sd, which the search for a limit does not beyond the limit.
-std::vector<Route> LegPlanner::weighted() const {
+std::vector<Route> LegPlanner::weighted() {
+  if (problem.min_sd.empty()) problem.min_sd = planning::relaxed_sd(problem, kUnlimited);
   std::vector<Route> routes;
   for (const double weight : {0.3, 1.0, 3.0, 10.0})
     if (auto route = search({.weight = weight, .labels = 1})) routes.push_back(std::move(*route));
   return routes;
 }
 
-std::optional<Route> LegPlanner::keep(double limit) const {
+std::optional<Route> LegPlanner::keep(double limit) {
   const double shortest = problem.to_go[slot(problem.from)];
   const int labels = problem.field.cells.count() <= kManyLabels ? 4 : 1;
   std::optional<Route> kept;
@@ -96,7 +98,7 @@ std::optional<Route> LegPlanner::keep(double limit) const {
 
 /// Returns the route with the smallest worst sd that was found: by bisection of the limit to 1 %, and among
 /// routes that weigh the sd.
-Route LegPlanner::min_sd_route() const {
+Route LegPlanner::min_sd_route() {
   const Route shortest = *search_alone({.labels = 1});
   Route best = with_belief(shortest);
   double low = position_sd(problem.start), high = shortest.worst_sd;

@@ -20,9 +20,10 @@ struct LegPlanner {
   planning::LandmarkSensing sensing;
   planning::RouteProblem problem = {};  ///< of the leg
   planning::Odometry odometry = {};
-  std::optional<planning::WorldBeliefs> before = {};  ///< at the start of the leg
-  bool worlds_agree = true;                           ///< at the start of the leg: all have problem.start
-  RouteProgress* progress = nullptr;                  ///< of problem.advanced; null: nobody listens
+  std::optional<planning::WorldBeliefs> at_start = {};  ///< of the route
+  std::optional<planning::WorldBeliefs> before = {};    ///< at the start of the leg
+  bool worlds_agree = true;                             ///< at the start of the leg: all have problem.start
+  RouteProgress* progress = nullptr;                    ///< of problem.advanced; null: nobody listens
 
   /// Returns the largest number of searches of leg().
   int max_searches() const;
@@ -36,7 +37,7 @@ struct LegPlanner {
   planning::Route leg();
   /// Returns the shortest route found that keeps a limit. The limit of the search is moved until the route
   /// with the belief over worlds just keeps it.
-  std::optional<planning::Route> keep(double limit) const;
+  std::optional<planning::Route> keep(double limit);
   /// Returns lower bounds of the sd in any world over all routes of the leg that keep a limit.
   std::vector<double> min_sd_in_any_world(double limit) const;
 
@@ -44,8 +45,8 @@ struct LegPlanner {
   std::optional<planning::Route> search_alone(const planning::SigmaSearch& wanted) const;
   planning::Route with_belief(planning::Route route) const;
   planning::Route cheapest(double weight);
-  std::vector<planning::Route> weighted() const;
-  planning::Route min_sd_route() const;
+  std::vector<planning::Route> weighted();
+  planning::Route min_sd_route();
   double min_limit(double limit) const;
   [[noreturn]] void fail_impossible(double min_kept) const;
   [[noreturn]] void fail_limit(double min_sd) const;

@@ -140,8 +140,7 @@ PlannedRoute describe(const LegPlanner& planner, const RobotMap& map, const Uids
     nodes.insert(nodes.end(), leg.nodes.begin() + (nodes.empty() ? 0 : 1), leg.nodes.end());
   }
   whole.nodes = nodes;
-  planning::WorldBeliefs beliefs(problem.start, planner.odometry, planner.landmarks, planner.request.worlds,
-                                 planner.request.seed);
+  planning::WorldBeliefs beliefs = *planner.at_start;
   std::vector<double> worst =
       planning::follow_route(beliefs, problem, planner.landmarks, planner.sensing, whole);
   nodes = whole.nodes;
@@ -221,7 +220,7 @@ struct LegSequence {
     planning::RouteProblem& problem = planner.problem;
     std::vector<planning::Route> legs;
     problem.start = start;
-    planner.before.emplace(start, planner.odometry, planner.landmarks, request.worlds, request.seed);
+    planner.before = planner.at_start;
     problem.heading.reset();
     if (points[0].yaw)
       problem.heading = static_cast<int>((std::lround(*points[0].yaw / (std::numbers::pi / 4)) % 8 + 8) % 8);
@@ -320,6 +319,7 @@ RouteResult plan_route(const RouteRequest& request, const Callbacks& callbacks) 
   check_limit(request, sd);
   problem.noise = planner.odometry.white();
   problem.start = {sd * sd, 0, sd * sd, 0, 0, yaw_sd * yaw_sd};
+  planner.at_start.emplace(problem.start, planner.odometry, planner.landmarks, request.worlds, request.seed);
 
   const auto leg_count = static_cast<std::int64_t>(stops.size() - 1);
   const std::int64_t more_routes = std::min<std::int64_t>(request.alternatives - 1, 1000);
