@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "planning/relief_row.hpp"
+
 namespace waymark::planning {
 namespace {
 
@@ -119,29 +121,29 @@ HazardTile HazardMap::compute(const Window& window) const {
   band(HazardBand::object) = object_hazard(near, window, where, request_.vehicle.base_radius());
 
   std::vector<char> inside(static_cast<std::size_t>(window.columns));
+  ReliefRow assessed(errors_, request_.vehicle);
   for (std::int64_t r = 0; r < window.rows; ++r) {
     mark_row(request_.undetected.surveyed, where.y(double(window.row + r)), where, window, inside);
-    for (std::int64_t c = 0; c < window.columns; ++c) {
-      const bool surveyed = inside[static_cast<std::size_t>(c)] != 0;
-      double probability = std::nan("");
-      if (const BaseRelief& fit = relief(c, r); !std::isnan(fit.step)) {
-        const ReliefHazard hazard = assess_relief(fit, errors_, request_.vehicle);
-        const auto set = [&](HazardBand b, const Uncertain& value) {
-          tile[static_cast<std::size_t>(b)](c, r) = static_cast<float>(value.value);
-          tile[static_cast<std::size_t>(b) + 1](c, r) = static_cast<float>(value.sd);
-        };
-        set(HazardBand::slope, hazard.slope);
-        set(HazardBand::roughness, hazard.roughness);
-        set(HazardBand::step, hazard.step);
-        if (request_.undetected.known) set(HazardBand::undetected, undetected_[surveyed]);
-        probability = 1 - (1 - hazard.probability) * (1 - double(band(HazardBand::object)(c, r))) *
-                              (1 - undetected_[surveyed].value);
-      } else if (band(HazardBand::object)(c, r) >= static_cast<float>(request_.min_hazard)) {
-        probability = band(HazardBand::object)(c, r);  // a known rock on unknown terrain
+    const auto row = [&](HazardBand b) { return band(b).row(r); };
+    const auto fits = relief.row(r);
+    const auto probabilities = assessed.assess(
+        fits, {row(HazardBand::slope), row(HazardBand::slope_sd), row(HazardBand::roughness),
+               row(HazardBand::roughness_sd), row(HazardBand::step), row(HazardBand::step_sd)});
+    const auto object = row(HazardBand::object), undetected = row(HazardBand::undetected),
+               undetected_sd = row(HazardBand::undetected_sd), probability = row(HazardBand::probability),
+               hazard_class = row(HazardBand::hazard_class);
+    for (std::size_t c = 0; c < fits.size(); ++c) {
+      const Uncertain& missed = undetected_[inside[c] != 0];
+      double whole = std::nan("");
+      if (!std::isnan(fits[c].step)) {
+        if (request_.undetected.known)
+          undetected[c] = static_cast<float>(missed.value), undetected_sd[c] = static_cast<float>(missed.sd);
+        whole = 1 - (1 - probabilities[c]) * (1 - double(object[c])) * (1 - missed.value);
+      } else if (object[c] >= static_cast<float>(request_.min_hazard)) {
+        whole = object[c];  // a known rock on unknown terrain
       }
-      band(HazardBand::probability)(c, r) = static_cast<float>(probability);
-      band(HazardBand::hazard_class)(c, r) =
-          static_cast<float>(class_of(static_cast<float>(probability), request_));
+      probability[c] = static_cast<float>(whole);
+      hazard_class[c] = static_cast<float>(class_of(static_cast<float>(whole), request_));
     }
   }
   return tile;

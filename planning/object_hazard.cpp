@@ -95,6 +95,7 @@ double contact_probability(const HazardObject& object, const Eigen::Vector2d& po
 
 Grid<float> object_hazard(std::span<const HazardObject> objects, const Window& window,
                           const Georeference& where, double base_radius) {
+  if (objects.empty()) return Grid<float>(window.columns, window.rows);
   Grid<double> safe(window.columns, window.rows, 1);
   for (const HazardObject& object : objects) {
     if (!(object.probability > 0)) continue;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "planning/gaussian_table.hpp"
+
 namespace waymark::planning {
 namespace {
 
@@ -22,16 +24,6 @@ std::vector<DiscCell> disc_cells(const BaseFootprint& base) {
     for (std::int64_t dx = -(w / thin) * thin; dx <= w; dx += thin) cells.push_back({double(dx), double(dy)});
   }
   return cells;
-}
-
-// The cumulative Gaussian at steps of 1/128 sd: linear between, exact to 2e-6, and a quarter of erfc's time.
-constexpr double kTableEnd = 6, kTableSteps = 128;
-
-std::vector<double> gaussian_table() {
-  std::vector<double> table;
-  for (int i = 0; i <= static_cast<int>(2 * kTableEnd * kTableSteps) + 1; ++i)
-    table.push_back(0.5 * std::erfc((kTableEnd - i / kTableSteps) * std::numbers::sqrt2 / 2));
-  return table;
 }
 
 double correlation_at(double distance, const HeightErrors& errors) {
@@ -82,10 +74,10 @@ double probability_above(const Uncertain& value, double limit) {
   if (!(value.sd > 0)) return value.value > limit ? 1 : 0;
   const double z = (value.value - limit) / value.sd;
   if (std::isnan(z)) return z;
-  if (z >= kTableEnd) return 1;
-  if (z <= -kTableEnd) return 0;
-  static const std::vector<double> table = gaussian_table();
-  const double at = (z + kTableEnd) * kTableSteps;
+  if (z >= kGaussianEnd) return 1;
+  if (z <= -kGaussianEnd) return 0;
+  const auto& table = gaussian_table();
+  const double at = (z + kGaussianEnd) * kGaussianSteps;
   const auto i = static_cast<std::size_t>(at);
   return table[i] + (at - static_cast<double>(i)) * (table[i + 1] - table[i]);
 }
