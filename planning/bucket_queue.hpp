@@ -30,13 +30,13 @@ class BucketQueue {
     const std::size_t to = std::max(bucket(entry.key), current_);
     if (to >= buckets_.size()) buckets_.resize(to + 1);
     buckets_[to].push_back(entry);
-    if (to == current_) std::ranges::push_heap(buckets_[to], is_later);
+    if (to == current_) std::ranges::push_heap(buckets_[to], IsLater());
   }
 
   QueueEntry pop() {
     while (buckets_[current_].empty()) advance();
     std::vector<QueueEntry>& heap = buckets_[current_];
-    std::ranges::pop_heap(heap, is_later);
+    std::ranges::pop_heap(heap, IsLater());
     const QueueEntry first = heap.back();
     heap.pop_back();
     --count_;
@@ -45,13 +45,14 @@ class BucketQueue {
 
  private:
   // Whole numbers of 128 bits, for a heap without branches: doubles >= 0 are ordered as their bits are.
-  static bool is_later(const QueueEntry& a, const QueueEntry& b) {
+  struct IsLater {
+    bool operator()(const QueueEntry& a, const QueueEntry& b) const { return order(a) > order(b); }
+
     __extension__ using Order = unsigned __int128;
-    const auto order = [](const QueueEntry& e) {
+    static Order order(const QueueEntry& e) {
       return Order{std::bit_cast<std::uint64_t>(e.key)} << 64 | Order{e.number};
-    };
-    return order(a) > order(b);
-  }
+    }
+  };
 
   static constexpr double kMaxBuckets = 1 << 16;  // the last one takes all larger keys
 
@@ -63,7 +64,7 @@ class BucketQueue {
   void advance() {
     std::vector<QueueEntry>().swap(buckets_[current_]);
     ++current_;
-    std::ranges::make_heap(buckets_[current_], is_later);
+    std::ranges::make_heap(buckets_[current_], IsLater());
   }
 
   double first_key_, per_width_;

@@ -65,6 +65,11 @@ double Rivals::expected(const Symmetric3& belief, const localization::Pose2& pos
     const Eigen::Vector2d apart = other.at - l.at;
     double square = 0;
     if (has_range) {
+      // Most are beyond by far: the inverse is not needed.
+      const double x = apart.x(), y = apart.y();
+      const double scaled =
+          covariance(1, 1) * x * x - (covariance(0, 1) + covariance(1, 0)) * x * y + covariance(0, 0) * y * y;
+      if (scaled > (1 + 1e-6) * kFarthest * kFarthest * covariance.determinant()) return;
       square = apart.dot(covariance.inverse() * apart);
     } else {
       const Eigen::Vector2d there = other.at - pose.at();

@@ -6,7 +6,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <deque>
 #include <limits>
 
 #include "planning/bucket_queue.hpp"
@@ -62,28 +61,29 @@ std::vector<double> relaxed_sd(const RouteProblem& problem, double max_sd, const
   const std::vector<double> far = variance_far_from_information(problem, best);
   std::vector<double> variance(slot(cells.count()), std::numeric_limits<double>::infinity());
   variance[slot(problem.from)] = start_variance(problem.start);
-  std::deque<std::int64_t> open{problem.from};
-  std::vector<char> is_open(slot(cells.count()), 0);
+  // Any order ends at the same values; the smallest variance first takes the fewest steps.
+  BucketQueue open(0, std::max(q * cells.cell, 1e-9) / 2);
+  open.push({variance[slot(problem.from)], static_cast<std::uint32_t>(problem.from), 0, 0});
   const Moves moves(cells, problem.passable);
   const double max_variance = max_sd * max_sd;
   std::array<double, kHeadings> noise{};
   for (int h = 0; h < kHeadings; ++h) noise[slot(h)] = q * moves.length(h);
   while (!open.empty()) {
-    const std::int64_t cell = open.front();
-    open.pop_front();
-    is_open[slot(cell)] = 0;
+    const QueueEntry first = open.pop();
+    const std::int64_t cell = first.number;
+    if (first.key > variance[slot(cell)]) continue;  // it was reached with less since
     for (unsigned left = moves.from(cell); left != 0; left &= left - 1) {
       const int h = std::countr_zero(left);
       const std::int64_t next = moves.to(cell, h);
       if (far[slot(next)] > max_variance) continue;
-      const double predicted = variance[slot(cell)] + noise[slot(h)];
+      const double predicted = first.key + noise[slot(h)];
       const double gain = best.rate[slot(next)] * moves.length(h);
       // Most steps are no better by far: the quotient is not needed.
       if (variance[slot(next)] * (1 + predicted * gain) < predicted * (1 - 1e-12)) continue;
       const double v = 1 / (1 / predicted + gain);
       if (!(v <= max_variance) || !(v < variance[slot(next)])) continue;
       variance[slot(next)] = v;
-      if (!is_open[slot(next)]) open.push_back(next), is_open[slot(next)] = 1;
+      open.push({v, static_cast<std::uint32_t>(next), 0, 0});
     }
   }
   for (std::size_t i = 0; i < variance.size(); ++i) variance[i] = std::sqrt(std::max(variance[i], far[i]));
