@@ -43,9 +43,9 @@ double PoseTrial::chance_of_own() const {
 }
 
 bool SlamRelocalization::lost() const {
-  const bool in_doubt = sets_ >= kUsualSets && fit_ <= kConfident * usual_;
+  const bool in_doubt = sets_ >= kUsualSets && fit() <= kConfident * usual_;
   if (trial_ && ((in_doubt && trial_->by_finder) || trial_->chance_of_rival() < kTrialProbable)) return true;
-  return sets_ >= kUsualSets && fit_ < 0.4 * usual_ && !is_explained();
+  return sets_ >= kUsualSets && fit() < 0.4 * usual_ && !is_explained();
 }
 
 bool SlamRelocalization::is_explained() const {
@@ -55,10 +55,12 @@ bool SlamRelocalization::is_explained() const {
 }
 
 void SlamRelocalization::learn(const SetEvidence& evidence) {
-  if (evidence.expected > 0) {
+  found_.add(evidence.expected);
+  if (!evidence.expected.empty()) {
     ++sets_;  // starts at a known pose, and learns the detection rate of the sensor
-    const double fraction = static_cast<double>(evidence.found) / evidence.expected;
-    fit_ += std::max(kFade, 1.0 / sets_) * (fraction - fit_);
+    const double fraction =
+        static_cast<double>(std::ranges::count(evidence.expected, true, &ExpectedLook::is_found)) /
+        static_cast<double>(evidence.expected.size());
     usual_ += std::max(lost() ? kLostFade : kSlowFade, 1.0 / sets_) * (fraction - usual_);
   }
   if (evidence.fit < 0) return;
@@ -73,13 +75,13 @@ SlamRelocalization::Verdict SlamRelocalization::decide() {
   ++trial_->sets;
   if (trial_->chance_of_rival() < kTrialCertain) {
     trial_.reset();
-    fit_ = usual_;
+    found_.raise_to(usual_);
     return Verdict::rival;
   }
   const bool refuted = trial_->chance_of_own() < kTrialProbable;
   if (!refuted && trial_->sets < kLongestTrial) return Verdict::open;
   trial_.reset();
-  if (refuted) fit_ = std::max(fit_, usual_);
+  if (refuted) found_.raise_to(usual_);
   return Verdict::own;
 }
 
@@ -96,13 +98,13 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
   if (seen.sightings.empty() || (trial_ && trial_->by_finder)) return {};
   unmatched_sets_ = evidence.matched > 0 ? 0 : unmatched_sets_ + 1;
   const bool searching = lost() || unmatched_sets_ >= kUnmatchedSets;
-  const bool confident = !searching && fit_ > kConfident * usual_;
+  const bool confident = !searching && fit() > kConfident * usual_;
   if (confident && is_explained()) claims_.trust();
   ++sets_since_query_;
   if (++sets_since_check_ >= (confident ? kRoutineInterval : kCheckInDoubt)) {
     sets_since_check_ = 0;
     if (is_confirmed(seen, here)) {
-      fit_ = std::max(fit_, usual_);  // it is where it thinks, whatever hides the landmarks
+      found_.raise_to(usual_);  // it is where it thinks, whatever hides the landmarks
       claims_.trust();
       sets_since_query_ = 0;
       return {};
@@ -119,7 +121,7 @@ std::optional<PoseEstimate> SlamRelocalization::update(const SightingSet& seen, 
     memory_ = SightingMemory(scales_);
     return {};
   }
-  fit_ = std::max(fit_, usual_);
+  found_.raise_to(usual_);
   claims_.trust();
   return {};
 }
@@ -167,8 +169,7 @@ void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const Slam
     if (!landmarks_[i].was_mapped || landmarks_[i].gone) continue;
     const bool is_expected =
         candidate.is_expected && missed_.detection(look_at(seen, candidate, false)) >= min_detection;
-    evidence.expected += is_expected;
-    evidence.found += is_expected && found[i];
+    if (is_expected) evidence.expected.push_back({i, found[i]});
     evidence.matched += found[i];
   }
   if (rival_) compare_with_rival(seen);

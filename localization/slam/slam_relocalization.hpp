@@ -6,6 +6,7 @@
 #include "localization/global/pose_finder.hpp"
 #include "localization/global/sighting_memory.hpp"
 #include "localization/localizer.hpp"
+#include "localization/slam/found_fraction.hpp"
 namespace waymark::localization {
 
 /// Comparison of two poses by the sightings that come after the second was proposed. Sightings that both or
@@ -25,8 +26,8 @@ struct PoseTrial {
 
 /// What one set of sightings says about the pose of SLAM in a map.
 struct SetEvidence {
-  int expected = 0, found = 0;   ///< landmarks of the map that should be seen, and those of them that were
-  int matched = 0;               ///< sightings of a landmark of the map, expected or not
+  std::vector<ExpectedLook> expected;  ///< landmarks of the map that should be seen
+  int matched = 0;                     ///< sightings of a landmark of the map, expected or not
   double fit = -1, chance = -1;  ///< fractions that the map explains, here and at a wrong pose; < 0: none
 };
 
@@ -40,9 +41,9 @@ struct SetEvidence {
 ///   trial there after three answers that agree (PoseClaims).
 /// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt.
 /// - Lost also: two fractions are small and no answer confirms the pose. SLAM finds less than 0.4 of the
-///   expected landmarks that it usually finds; terrain without landmarks does not count. And the map explains
-///   less than half of the usual fraction of its sightings, or less than a fifth beyond chance. Terrain that
-///   hides landmarks makes only the first one small, unmapped objects only the second.
+///   expected landmarks that it usually finds (FoundFraction); terrain without landmarks does not count. And
+///   the map explains less than half of the usual fraction of its sightings, or less than a fifth beyond
+///   chance. Terrain that hides landmarks makes only the first one small, unmapped objects only the second.
 class SlamRelocalization {
  public:
   explicit SlamRelocalization(PoseFinder finder, PoseCheck check = {}, FeatureScales scales = {})
@@ -65,6 +66,7 @@ class SlamRelocalization {
 
  private:
   void learn(const SetEvidence& evidence);
+  double fit() const { return found_.value(usual_); }
   bool is_explained() const;
   bool is_confirmed(const SightingSet& seen, const PoseEstimate& here);
 
@@ -74,7 +76,8 @@ class SlamRelocalization {
   SightingMemory memory_;
   PoseClaims claims_;
   std::optional<PoseTrial> trial_;
-  double fit_ = 0, usual_ = 0;  // fractions of the expected landmarks that were seen, short and long term
+  FoundFraction found_;                             // of the expected landmarks
+  double usual_ = 0;                                // the same over some hundred sets
   double explained_fit_ = 0, usual_explained_ = 0;  // fractions of the sightings that the map explains
   ExplainedFraction beyond_chance_;
   int explained_sets_ = 0;
