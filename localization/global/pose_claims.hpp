@@ -5,6 +5,10 @@
 #include "localization/global/pose_finder.hpp"
 namespace waymark::localization {
 
+/// Returns whether a robot that was at `reckoned`, as odometry says, may be at `found`: odometry errs by up
+/// to 0.3 m per metre driven beyond what the covariances state.
+bool is_in_reach(const PoseEstimate& found, const PoseEstimate& reckoned, double driven);
+
 /// Decides which poses of a finder a robot accepts that knows where it was.
 /// - A pose within reach of dead reckoning is accepted at once.
 /// - A pose that the robot cannot have reached by itself contradicts odometry: the robot was carried away, or

@@ -54,7 +54,7 @@ EkfSlam::EkfSlam(const PoseEstimate& start, LandmarkGrid map, FeatureScales scal
 void EkfSlam::predict(const BodyMotion& motion) {
   pending_ = compose(pending_, motion);
   starts_.predict(motion);
-  if (search_) search_->predict(motion);
+  if (search_) search_->predict(motion), past_.predict(motion);
   if (rival_) rival_->predict(motion);
   if (tracker_) tracker_->predict(motion);
 }
@@ -140,6 +140,7 @@ SightingSet EkfSlam::with_features_in_map(SightingSet seen) const {
 }
 
 std::vector<Match> EkfSlam::update(const SightingSet& set) {
+  ++sets_;
   note_reach(set);
   apply_pending_motion();
   const std::vector<std::optional<LandmarkKey>> in_map = identify_in_map(set);
@@ -197,7 +198,8 @@ void EkfSlam::match(const SightingSet& seen, std::vector<SlamPair> pairs, std::v
       m.at = l.at, m.covariance = l.covariance;
     l.log_odds = std::min(l.log_odds - l.missed + options_.seen, kSurestLogOdds);
     l.missed = 0;
-    ++l.matches;
+    if (l.matches++ == 0) l.first_set = sets_;
+    l.last_set = sets_;
     if (l.line) {
       see_piece(l, s, state_.pose() * seen.robot_from_sensor);
       continue;
@@ -283,6 +285,7 @@ void EkfSlam::append(SlamLandmark fresh, const SeenLandmark& seen) {
   fresh.type = seen.type;
   fresh.features = seen.features;
   fresh.matches = fresh.expected = 1;
+  fresh.first_set = fresh.last_set = sets_;
   if (seen.type) fresh.feature_samples.push_back(seen.features);
   if (options_.identification.use_identities && seen.identity) {
     fresh.key = seen.identity;

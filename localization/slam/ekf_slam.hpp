@@ -14,6 +14,7 @@
 #include "localization/localizer.hpp"
 #include "localization/slam/bearing_starts.hpp"
 #include "localization/slam/missed_views.hpp"
+#include "localization/slam/past_sets.hpp"
 #include "localization/slam/slam_association.hpp"
 #include "localization/slam/slam_landmark.hpp"
 #include "localization/slam/slam_options.hpp"
@@ -122,6 +123,8 @@ class EkfSlam final : public Localizer {
                             const std::vector<bool>& found);
   bool is_of_map(std::size_t sighting) const { return last_[sighting] && *last_[sighting] < map_.size(); }
   void compare_with_rival(const SightingSet& seen);
+  void remember(const SightingSet& seen, std::span<const SlamCandidate> near, const std::vector<bool>& found);
+  bool is_contradicted(const PoseEstimate& rival);
   void restart(const PoseEstimate& at);
 
   SlamOptions options_;
@@ -147,6 +150,8 @@ class EkfSlam final : public Localizer {
   MissedViews missed_;  ///< of landmarks of the map
   std::size_t unplaced_ranges_ = 0;
   std::optional<SlamRelocalization> search_;
+  PastSets past_;
+  std::int64_t sets_ = 0;                           ///< of sightings so far
   std::unique_ptr<EkfSlam> rival_;                  ///< started at the pose under trial
   std::unique_ptr<MultiHypothesisFilter> tracker_;  ///< follows the robot in the map as given
   ChanceFraction chance_;

@@ -18,6 +18,7 @@ struct SlamLandmark {
   double log_odds = 0;  ///< of its existence: the evidence counter of section 4.4
   double missed = 0;    ///< the part of `log_odds` that views since the last match took (MissedViews)
   std::int64_t matches = 0;
+  std::int64_t first_set = 0, last_set = 0;  ///< numbers of the sets that showed it first and last
   std::int64_t expected = 0;       ///< sets of sightings that should have shown it, matched ones included
   std::optional<LandmarkKey> key;  ///< of the map's landmark, or of the identity it was seen with
   bool gone = false;               ///< removed because the evidence says it does not exist

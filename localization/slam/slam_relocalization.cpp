@@ -21,6 +21,7 @@ constexpr int kWait = 5, kDoubtInterval = 10, kRoutineInterval = 20, kCheckInDou
 // Fraction of looks, or of that of the best bin: a landmark of such a bin should be seen.
 constexpr double kExpectedDetection = 0.65, kOfBest = 0.95;
 constexpr int kUnmatchedSets = 10;
+constexpr int kKnownFor = 10;   // sets after which a landmark is known, and not yet out of sight
 constexpr int kUsualSets = 20;  // before the usual fit is known
 // Of the sightings, as in RelocalizingFilter: fraction of the usual, beyond chance, and that of the usual.
 constexpr double kExplainedOfUsual = 0.5, kBeyondChance = 0.2, kBeyondChanceOfUsual = 0.4;
@@ -172,16 +173,41 @@ void EkfSlam::check_relocalization(const SightingSet& seen, std::span<const Slam
     if (is_expected) evidence.expected.push_back({i, found[i]});
     evidence.matched += found[i];
   }
+  remember(seen, near, found);
   if (rival_) compare_with_rival(seen);
   if (!rival_ && is_outdone()) restart(tracker_->estimate());
   std::optional<PoseEstimate> at = search_->update(seen, evidence, own_estimate());
   const bool by_finder = at.has_value();
   if (!at && !rival_) at = contradiction();
+  if (at && is_contradicted(*at)) at.reset();
   if (at) {
     rival_ = std::make_unique<EkfSlam>(*at, map_, scales_, options_, visible_);
     search_->begin_trial(by_finder);
   }
   if (!rival_ && !search_->lost() && evidence.matched > 0) trusted_ = landmarks_.size();
+}
+
+void EkfSlam::remember(const SightingSet& seen, std::span<const SlamCandidate> near,
+                       const std::vector<bool>& found) {
+  int known = 0, expected = 0;
+  for (const SlamCandidate& candidate : near) {
+    const SlamLandmark& l = landmarks_[candidate.landmark];
+    if (l.matches == 0 || sets_ - l.first_set < kKnownFor) continue;
+    const bool is_found = found[candidate.landmark];
+    known += is_found;
+    expected += is_found || (candidate.is_in_view && sets_ - l.last_set <= kKnownFor);
+  }
+  past_.add(seen, own_estimate(), known, expected);
+}
+
+bool EkfSlam::is_contradicted(const PoseEstimate& rival) {
+  if (!matcher_) return false;
+  return past_.contradict(rival, own_estimate(), [&](const SightingSet& seen, const PoseEstimate& from) {
+    std::vector<bool> explained;
+    for (const Match& m : matcher_->identify(seen, from, matcher_->landmarks_near(seen, from)).matches)
+      explained.push_back(m.verdict == Verdict::matched || m.verdict == Verdict::ambiguous);
+    return explained;
+  });
 }
 
 void EkfSlam::compare_with_rival(const SightingSet& seen) {
@@ -204,6 +230,7 @@ void EkfSlam::compare_with_rival(const SightingSet& seen) {
 }
 
 void EkfSlam::restart(const PoseEstimate& at) {
+  past_.move(own_estimate().pose, at.pose);
   state_.focus(1e9);
   missed_.forget_views();
   SlamState fresh(at);

@@ -38,7 +38,8 @@ struct SetEvidence {
 /// - A pose found that contradicts SLAM is put on trial. The sightings that made it are no evidence in the
 ///   trial: they share its errors.
 /// - In unmapped terrain landmarks that match by chance win a trial. A pose out of odometry's reach is put on
-///   trial there after three answers that agree (PoseClaims).
+///   trial there after three answers that agree (PoseClaims). EkfSlam refuses one that its past contradicts
+///   (PastSets).
 /// - Lost: the trial favours the other pose, or a trial of the finder's pose began in doubt.
 /// - Lost also: two fractions are small and no answer confirms the pose. SLAM finds less than 0.4 of the
 ///   expected landmarks that it usually finds (FoundFraction); terrain without landmarks does not count. And
