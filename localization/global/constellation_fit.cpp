@@ -14,8 +14,19 @@ namespace {
 
 constexpr std::size_t kKept = 10;
 constexpr std::int64_t kSupportTests = 50;  // poses compared with all sightings for each that is fitted
+constexpr std::size_t kFirstCompared = 8;   // sightings of a pose that votes alone do not rank
 constexpr double kSupportSlack = 1.5;       // a guess uses three sightings only
 constexpr double kNearby = 16;              // area about a sighting over that of its gate
+
+template <class Crowd>
+void keep_best(std::vector<Crowd>& crowds, std::size_t max_count) {
+  const auto count = std::min(crowds.size(), max_count);
+  std::partial_sort(crowds.begin(), crowds.begin() + static_cast<std::ptrdiff_t>(count), crowds.end(),
+                    [](const Crowd& a, const Crowd& b) {
+                      return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
+                    });
+  crowds.resize(count);
+}
 
 }  // namespace
 
@@ -31,10 +42,6 @@ std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
   double sd = index_.typical_sd_;
   for (const Seen& s : points_) sd = std::max(sd, s.sd);
   const double cell = std::max(3 * sd, 1e-6), turn = 0.15;
-  struct Crowd {
-    double weight = 0;
-    std::size_t first = 0;
-  };
   std::unordered_map<std::uint64_t, Crowd> crowds;
   const auto key = [&](const Guess& g) {
     const Eigen::Vector3d at = plane_at(index_.positions_[g.anchor]).point(g.middle) / cell;
@@ -43,39 +50,53 @@ std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
     return k;
   };
   for (std::size_t i = 0; i < guesses_.size(); ++i) {
-    auto [crowd, fresh] = crowds.try_emplace(key(guesses_[i]), Crowd{0, i});
+    auto [crowd, fresh] = crowds.try_emplace(key(guesses_[i]), Crowd{.weight = 0, .first = i});
     crowd->second.weight += guesses_[i].weight;
   }
   std::vector<Crowd> ranked;
   for (const auto& [k, crowd] : crowds) ranked.push_back(crowd);
-  const auto keep_best = [&](std::int64_t count) {
-    const auto best = std::min(ranked.size(), static_cast<std::size_t>(count));
-    std::partial_sort(ranked.begin(), ranked.begin() + static_cast<std::ptrdiff_t>(best), ranked.end(),
-                      [](const Crowd& a, const Crowd& b) {
-                        return a.weight != b.weight ? a.weight > b.weight : a.first < b.first;
-                      });
-    ranked.resize(best);
-  };
-  keep_best(kSupportTests * o_.max_tried);
-  for (Crowd& crowd : ranked) crowd.weight = support(guesses_[crowd.first]);
-  keep_best(o_.max_tried);
   std::vector<ConstellationFix> fixes;
-  for (const Crowd& crowd : ranked)
-    if (auto fix = fit(guesses_[crowd.first])) keep(fixes, std::move(*fix));
+  for (const std::size_t i : best_guesses(std::move(ranked)))
+    if (auto fix = fit(guesses_[i])) keep(fixes, std::move(*fix));
   std::ranges::stable_sort(fixes, {}, badness);
   if (fixes.size() > kKept) fixes.resize(kKept);
   return fixes;
 }
 
+// Triangles are of neighbours. Where a robot sees one landmark in five, as terrain and height of its sensor
+// hide the others, few triangles of its sightings are in the index, and votes alone do not rank the right
+// pose.
+std::vector<std::size_t> ConstellationSearch::best_guesses(std::vector<Crowd> by_votes) const {
+  const auto max_supported = static_cast<std::size_t>(kSupportTests * o_.max_tried);
+  std::vector<Crowd> by_sample;
+  if (by_votes.size() > max_supported) {
+    by_sample = by_votes;
+    for (Crowd& crowd : by_sample) crowd.weight = support(guesses_[crowd.first], kFirstCompared);
+    keep_best(by_sample, max_supported);
+  }
+  keep_best(by_votes, max_supported);
+  std::vector<std::size_t> best;
+  for (std::vector<Crowd>* crowds : {&by_votes, &by_sample}) {
+    for (Crowd& crowd : *crowds) crowd.weight = support(guesses_[crowd.first], points_.size());
+    keep_best(*crowds, static_cast<std::size_t>(o_.max_tried));
+    for (const Crowd& crowd : *crowds) best.push_back(crowd.first);
+  }
+  std::ranges::sort(best);
+  best.erase(std::ranges::unique(best).begin(), best.end());
+  return best;
+}
+
 // A vote counts three sightings, and many poses share a cell of the votes: this compares all of them.
-double ConstellationSearch::support(const Guess& g) const {
+double ConstellationSearch::support(const Guess& g, std::size_t max_count) const {
   const LandmarkPosition& anchor = index_.positions_[g.anchor];
   const TangentPlane plane = plane_at(anchor);
   const bool is_plane = plane.east == Eigen::Vector3d::UnitX();
   const Eigen::Matrix2d r = rotation(g.yaw);
   const double density = static_cast<double>(index_.size()) / index_.area_;
   double sum = 0;
-  for (const Seen& s : points_) {
+  const std::size_t count = std::min(max_count, points_.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const Seen& s = points_[k * points_.size() / count];
     Eigen::Vector3d at = plane.point(g.middle + r * (s.at - middle_));
     if (!is_plane) at *= anchor.at.norm() / at.norm();
     const double radius = kSupportSlack * o_.sigmas * std::hypot(s.sd, index_.typical_sd_);

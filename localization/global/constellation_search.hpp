@@ -39,6 +39,11 @@ class ConstellationSearch {
     Eigen::Vector2d middle;  // position of the centroid of the sightings
     double yaw, weight;
   };
+  /// Guesses of nearly one pose.
+  struct Crowd {
+    double weight = 0;
+    std::size_t first = 0;  // index of the best one
+  };
   using Matches = std::vector<std::optional<std::uint32_t>>;
   using Hit = std::pair<std::array<const Seen*, 3>, std::array<std::uint32_t, 3>>;
   void add(const SightingSet& seen, std::size_t i);
@@ -63,8 +68,12 @@ class ConstellationSearch {
   std::vector<std::array<TypeId, 3>> possible_types(const std::array<const Seen*, 3>& c) const;
   // Groups similar guesses and fits the best of each group.
   std::vector<ConstellationFix> fit_guesses();
-  // Returns the sum of the information of the sightings with a landmark near, -ln of their chance.
-  double support(const Guess& g) const;
+  // Returns the guesses to fit: of those with most votes, and of those that a part of the sightings fits
+  // best, the ones that explain most.
+  std::vector<std::size_t> best_guesses(std::vector<Crowd> by_votes) const;
+  // Returns the sum of the information of the sightings with a landmark near, -ln of their chance. Compares
+  // at most `max_count` of them, near and far ones.
+  double support(const Guess& g, std::size_t max_count) const;
   static double badness(const ConstellationFix& f) { return f.log_false_alarms; }
   // Adds a fix unless the same pose was found already.
   void keep(std::vector<ConstellationFix>& fixes, ConstellationFix fix) const;
