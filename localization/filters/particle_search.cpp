@@ -31,9 +31,11 @@ std::optional<Pose2> ParticleFilter::sample_pose(const SightingSet& seen, const 
   return sensor * inverse(seen.robot_from_sensor);
 }
 
-// Calls the finder at most every fifth set, since it searches the whole map.
+// Calls the finder at most every fifth set, since it searches the whole map; more often at first.
 void ParticleFilter::query_finder(const SightingSet& seen) {
-  if (queried_set_ != 0 && sets_ < queried_set_ + 5) return;
+  if (queried_set_ != 0 &&
+      sets_ < queried_set_ + static_cast<std::uint64_t>(search_interval(static_cast<std::int64_t>(sets_))))
+    return;
   queried_set_ = sets_;
   finder_samples_.clear();
   PoseSearchResult found = memory_.find(finder_, seen);

@@ -110,7 +110,8 @@ void RelocalizingFilter::restart(const PoseEstimate& at) {
 
 // Restarts at the finder's pose if it is certain.
 bool RelocalizingFilter::relocate(const SightingSet& seen) {
-  if (++sets_since_query_ < kWait) return false;
+  const int wait = located_ ? kWait : search_interval(++sets_without_pose_);
+  if (++sets_since_query_ < wait) return false;
   sets_since_query_ = 0;
   PoseSearchResult found = memory_.find(finder_, seen);
   // Odometry may have bent what is remembered. A robot that knows where it was has a better judge in it.

@@ -21,10 +21,10 @@ namespace waymark::localization {
 ///   by odometry and updated by fixes.
 ///
 /// A lost filter calls the PoseFinder on recent sightings, at most every fifth set, since that searches the
-/// whole map. If the finder is certain, the filter restarts at its pose. Otherwise it restarts every
-/// twentieth set at the last reliable estimate, predicted by odometry, because its matches since then are
-/// not reliable.
-/// A pose out of odometry's reach needs three answers that agree (PoseClaims).
+/// whole map; without a start more often at first (search_interval). If the finder is certain, the filter
+/// restarts at its pose. Otherwise it restarts every twentieth set at the last reliable estimate, predicted
+/// by odometry, because its matches since then are not reliable. A pose out of odometry's reach needs three
+/// answers that agree (PoseClaims).
 ///
 /// With a NearPoseFinder a filter that was lost stays so until its pose is proven: by the objects matched
 /// since (RegainEvidence), or by a search of the poses that odometry allows, every third set. While chance
@@ -101,6 +101,7 @@ class RelocalizingFilter final : public Localizer {
   RegainEvidence evidence_;
   int sets_since_search_ = 0, near_searches_ = 0;
   int sets_since_query_ = 0, unresolved_sets_ = 0, restarts_ = 0;
+  int sets_without_pose_ = 0;  // of a filter without a start, until it is found
 };
 
 }  // namespace waymark::localization

@@ -2,6 +2,7 @@
 #include "localization/global/pose_finder.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -10,9 +11,14 @@ namespace {
 
 constexpr double kElsewhere = 16.3;     // squared distance of two poses: 99.9 % of chi-square, 3 dof
 constexpr double kUnknownExtent = 1e5;  // m, standard deviation
+constexpr int kMaxInterval = 5;         // sets
 constexpr double kMinElsewhere = 1;     // m: a filter recovers from less by itself
 
 }  // namespace
+
+int search_interval(std::int64_t sets) {
+  return static_cast<int>(std::clamp<std::int64_t>(sets / 4, 1, kMaxInterval));
+}
 
 PoseEstimate pose_anywhere(const Eigen::AlignedBox2d& box) {
   const Eigen::Vector2d centre = box.isEmpty() ? Eigen::Vector2d(0, 0) : box.center();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <Eigen/Geometry>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <span>
@@ -38,6 +39,10 @@ using PoseCheck =
 using NearPoseFinder = std::function<PoseSearchResult(const SightingSet&, const PoseEstimate& prior)>;
 /// Reason of a search that had nothing to compare with the map.
 inline constexpr std::string_view kTooFewSightings = "too few sightings with range";
+
+/// Returns the number of sets from one search of the whole map to the next, of a robot without a start that
+/// has seen `sets` sets. At first each set shows much that is new; later a search costs more than it finds.
+int search_interval(std::int64_t sets);
 
 /// Returns the estimate of a robot that may be anywhere in a box, with any heading: centre, and the variances
 /// of an even distribution plus 1 m^2. An empty box is one of unknown extent: 100 km of standard deviation.
