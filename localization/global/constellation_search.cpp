@@ -13,7 +13,7 @@ constexpr std::size_t kMaxSightings = 40;  // the nearest ones; more only cost t
 constexpr std::size_t kSeenNeighbours = 7;
 constexpr double kMaxCells = 3000;  // of one triangle; with more its lengths are too uncertain to look up
 constexpr double kRepeats = 0.05;   // expected chance poses below which a second pose is no chance
-constexpr double kUnmapped = 0.2;   // fraction of what is seen that the map may lack
+constexpr double kUnmapped = 0.2;   // least fraction of what is seen that the map may lack
 constexpr std::size_t kMaxGuesses = 30000;  // from the triangles with the fewest hits
 
 }  // namespace
@@ -283,8 +283,14 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
   const ConstellationFix &best = fixes[0], &next = fixes[1];
   if (!(badness(next) - badness(best) > std::log(o_.lead))) return "two poses fit alike";
   // Two places that chance does not explain repeat each other. What only one of them shows may be missing in
-  // the map at the other.
-  const double more = (best.matched - next.matched) * std::log((1 - kUnmapped) / kUnmapped);
+  // the map at the other, which may lack as large a part of what is seen as at the best pose. If each
+  // explains sightings of its own, the robot was carried from one to the other.
+  const auto seen = static_cast<double>(points_.size());
+  std::ptrdiff_t shared = 0;
+  for (std::size_t i = 0; i < total_; ++i) shared += best.landmarks[i] && next.landmarks[i];
+  const double unmapped =
+      2 * shared < next.matched ? kUnmapped : std::max(kUnmapped, (seen - best.matched + 1) / (seen + 2));
+  const double more = (best.matched - next.matched) * std::log((1 - unmapped) / unmapped);
   const bool repeats = badness(next) < std::log(kRepeats);
   return repeats && !(more > std::log(o_.lead)) ? "the map has two such places" : "";
 }

@@ -149,6 +149,41 @@ TEST(Constellation, PlacesThatTheMapRepeatsAreUnknown) {
   EXPECT_EQ(t.invented, 0);
 }
 
+// Half of what is seen is unmapped. Of two places that are alike, the map lacks a quarter of the rest at the
+// one where the robot is: no more than it lacks anyhow.
+TEST(Constellation, TheMapMayLackMoreOfOneOfTwoPlacesThatAreAlike) {
+  const Stars real = strewn_rocks(40, 40, 11);
+  std::vector<MapLandmark> mapped;
+  for (std::size_t i = 0; i < 20; ++i) {
+    MapLandmark twin = real.map[i];
+    twin.key += 1000;
+    twin.at.x() += 200;
+    mapped.push_back(twin);
+    if (i % 4 != 0) mapped.push_back(real.map[i]);
+  }
+  const ConstellationIndex index(mapped, {});
+  Random random(2);
+  const SensorModel how{.reach = 40, .detected = 1, .clutter = 0};
+  const auto seen = look(real.map, real.positions, {}, {}, how, random);
+  const ConstellationAnswer answer = index.find(seen.set);
+  EXPECT_FALSE(answer.fix);
+  EXPECT_EQ(answer.reason, "the map has two such places");
+  ASSERT_GE(answer.candidates.size(), 2u);
+  EXPECT_GE(answer.candidates[0].matched, answer.candidates[1].matched + 5);
+}
+
+// Terrain hides most rocks of a rover's map, so few of its sightings are neighbours in the map.
+TEST(Constellation, FindsRocksOfWhichOneInFiveIsSeen) {
+  const Stars stars = strewn_rocks(4700, 250, 7);
+  const ConstellationIndex index(stars.map, {});
+  const SensorModel how{.reach = 25, .range_sd = 0.15, .feature_sd = 0.15, .detected = 0.2};
+  const Tally t = tally(stars, index, how, 100, 1, 18);
+  report("rocks, one in five seen", stars, index, t);
+  EXPECT_GE(t.right, 96);
+  EXPECT_EQ(t.wrong, 0);
+  EXPECT_EQ(t.invented, 0);
+}
+
 TEST(Constellation, FindsRocksAnywhereInAMap) {
   const Stars stars = strewn_rocks(5000, 500, 3);
   const ConstellationIndex index(stars.map, {});
