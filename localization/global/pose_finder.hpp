@@ -40,8 +40,8 @@ using NearPoseFinder = std::function<PoseSearchResult(const SightingSet&, const 
 /// Reason of a search that had nothing to compare with the map.
 inline constexpr std::string_view kTooFewSightings = "too few sightings with range";
 
-/// Returns the number of sets from one search of the whole map to the next, of a robot without a start that
-/// has seen `sets` sets. At first each set shows much that is new; later a search costs more than it finds.
+/// Returns the sets from one search of the whole map to the next, of a robot without a start, after `sets`
+/// sets. At first each set shows much that is new; later a search costs more than it finds.
 int search_interval(std::int64_t sets);
 
 /// Returns the estimate of a robot that may be anywhere in a box, with any heading: centre, and the variances
