@@ -22,6 +22,10 @@ struct ConstellationOptions {
   std::int64_t min_matches = 4;          ///< sightings that must have a landmark, unless they have identities
   std::int64_t max_tried = 60;           ///< poses that are fitted
   IdentificationOptions identification;  ///< its feature limits and use of identities; described by its owner
+  /// The robot has known its pose. Then fewer guesses are compared with all sightings, and a second place
+  /// that is alike needs less to be excluded: odometry judges the answers, and what is remembered of a robot
+  /// that was carried away is of two places.
+  bool had_pose = false;
 
   void describe(OptionVisitor& option);
 };

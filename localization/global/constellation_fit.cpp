@@ -69,7 +69,7 @@ std::vector<ConstellationFix> ConstellationSearch::fit_guesses() {
 std::vector<std::size_t> ConstellationSearch::best_guesses(std::vector<Crowd> by_votes) const {
   const auto max_supported = static_cast<std::size_t>(kSupportTests * o_.max_tried);
   std::vector<Crowd> by_sample;
-  if (by_votes.size() > max_supported) {
+  if (!o_.had_pose && by_votes.size() > max_supported) {
     by_sample = by_votes;
     for (Crowd& crowd : by_sample) crowd.weight = support(guesses_[crowd.first], kFirstCompared);
     keep_best(by_sample, max_supported);
@@ -79,10 +79,9 @@ std::vector<std::size_t> ConstellationSearch::best_guesses(std::vector<Crowd> by
   for (std::vector<Crowd>* crowds : {&by_votes, &by_sample}) {
     for (Crowd& crowd : *crowds) crowd.weight = support(guesses_[crowd.first], points_.size());
     keep_best(*crowds, static_cast<std::size_t>(o_.max_tried));
-    for (const Crowd& crowd : *crowds) best.push_back(crowd.first);
+    for (const Crowd& crowd : *crowds)
+      if (std::ranges::find(best, crowd.first) == best.end()) best.push_back(crowd.first);
   }
-  std::ranges::sort(best);
-  best.erase(std::ranges::unique(best).begin(), best.end());
   return best;
 }
 

@@ -104,9 +104,10 @@ PoseSearch make_pose_search(const LocalizeTask& task, const SearchOptions& searc
     std::optional<TypeId> top_type;
   };
   const auto open_index = [map = task.map.map, sensor = task.sensor, settings = task.settings.identification,
-                           search, callbacks = task.callbacks] {
+                           had_pose = task.start.has_value(), search, callbacks = task.callbacks] {
     localization::ConstellationOptions options = search.constellations;
     options.identification = settings;
+    options.had_pose = had_pose;
     std::vector<localization::MapLandmark> landmarks = all_landmarks(map, sensor);
     if (landmarks.empty() && map.landmarks > 0)
       callbacks.warning(fmt::format("the map has {} landmarks, too many to search all of it: give a --start",
