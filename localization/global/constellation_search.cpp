@@ -283,15 +283,12 @@ std::string_view ConstellationSearch::verdict(const std::vector<ConstellationFix
   const ConstellationFix &best = fixes[0], &next = fixes[1];
   if (!(badness(next) - badness(best) > std::log(o_.lead))) return "two poses fit alike";
   // Two places that chance does not explain repeat each other. What only one of them shows may be missing in
-  // the map at the other, which may lack as large a part of what is seen as at the best pose. If each
-  // explains sightings of its own, the robot was carried from one to the other.
+  // the map at the other, which may lack as large a part of what is seen as at the best pose.
   const auto seen = static_cast<double>(points_.size());
   const double unmapped =
       o_.had_pose ? kUnmapped : std::max(kUnmapped, (seen - best.matched + 1) / (seen + 2));
   const double more = (best.matched - next.matched) * std::log((1 - unmapped) / unmapped);
-  int shared = 0;
-  for (std::size_t i = 0; i < total_; ++i) shared += best.landmarks[i] && next.landmarks[i];
-  const bool repeats = badness(next) < std::log(kRepeats) && (o_.had_pose || 2 * shared >= next.matched);
+  const bool repeats = badness(next) < std::log(kRepeats);
   return repeats && !(more > std::log(o_.lead)) ? "the map has two such places" : "";
 }
 
