@@ -142,7 +142,7 @@ def test_hazards_are_those_of_the_program(site, tmp_path):
 
 def test_a_route_reports_what_is_done_and_stops_on_ctrl_c(site, tmp_path):
     heard = []
-    options = dict(sensor="horizontal_laser", least_sigma=True, worlds=4, cell=1)
+    options = dict(sensor="horizontal_laser", least_sigma=True, worlds=4, cell=0.5)
     waymark.route(site / "map.gpkg", (-30, -30), (30, 30), tmp_path / "all.csv", progress=lambda *at: heard.append(at),
                   **options)
     assert [stage for stage, *_ in heard][0] == "information" and heard[-1][0] == "route"
