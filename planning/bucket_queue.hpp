@@ -19,7 +19,7 @@ struct QueueEntry {
 /// use is a heap, small enough for the cache.
 class BucketQueue {
  public:
-  /// `width` > 0 is that of a bucket, the first of which begins at `first_key`. Any width and first key give
+  /// `width` > 0 is that of a bucket; the first bucket begins at `first_key`. Any width and first key give
   /// the same order.
   BucketQueue(double first_key, double width) : first_key_(first_key), per_width_(1 / width), buckets_(1) {}
 

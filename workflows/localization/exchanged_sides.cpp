@@ -25,17 +25,17 @@ constexpr std::size_t kMaxBeams = 200;               // of a scan
 // Where robots turn, exchanged scans of made halls and of the Intel lab fill 1.6 to 5 times as many cells.
 constexpr double kMaxRatio = 0.75;
 
-/// A look and what it shows with one sign of the bearings.
+/// The points that a look shows, as written and with left and right exchanged.
 struct Look {
   Pose2 robot_from_sensor;
-  Points left, right;
+  Points written, exchanged;
 };
 
 void add(Look& look, double range, double bearing, double max_range) {
   if (!(range > 0 && range < std::min(max_range, kMaxRange))) return;
   const Eigen::Vector2d point{range * std::cos(bearing), range * std::sin(bearing)};
-  look.left.push_back(point);
-  look.right.emplace_back(point.x(), -point.y());
+  look.written.push_back(point);
+  look.exchanged.emplace_back(point.x(), -point.y());
 }
 
 Look look_of(const LaserScan& scan) {
@@ -105,11 +105,11 @@ SeenCells count_seen_cells(const localization::RobotLog& log,
     const auto pose = pose_at(poses, event.t);
     if (!pose || (last && !is_elsewhere(*pose, *last))) continue;
     const Look look = scan ? look_of(*scan) : look_of(*set);
-    if (look.left.empty()) continue;
+    if (look.written.empty()) continue;
     last = pose;
-    written.add(*pose * look.robot_from_sensor, look.left);
-    exchanged.add(*pose * look.robot_from_sensor, look.right);
-    ++seen.looks, seen.points += std::ssize(look.left);
+    written.add(*pose * look.robot_from_sensor, look.written);
+    exchanged.add(*pose * look.robot_from_sensor, look.exchanged);
+    ++seen.looks, seen.points += std::ssize(look.written);
   }
   seen.as_written = written.count(), seen.exchanged = exchanged.count();
   return seen;

@@ -170,6 +170,9 @@ TEST(Constellation, TheMapMayLackMoreOfOneOfTwoPlacesThatAreAlike) {
   EXPECT_EQ(answer.reason, "the map has two such places");
   ASSERT_GE(answer.candidates.size(), 2u);
   EXPECT_GE(answer.candidates[0].matched, answer.candidates[1].matched + 5);
+  ConstellationOptions started;  // odometry judges the answers of a robot that had a pose
+  started.had_pose = true;
+  EXPECT_TRUE(ConstellationIndex(mapped, {}, started).find(seen.set).fix);
 }
 
 // Terrain hides most rocks of a rover's map, so few of its sightings are neighbours in the map.
