@@ -74,8 +74,9 @@ class Growing {
     return beside >= kBesideEmpty;
   }
 
+  /// `at` is a copy: `visit` may add to the list that it comes from.
   template <class Visit>
-  void around(const RoofCellAt& at, std::int64_t reach, Visit&& visit) const {
+  void around(const RoofCellAt at, std::int64_t reach, Visit&& visit) const {
     for (std::int64_t r = std::max<std::int64_t>(0, at.row - reach);
          r <= std::min(group_.rows() - 1, at.row + reach); ++r)
       for (std::int64_t c = std::max<std::int64_t>(0, at.column - reach);
