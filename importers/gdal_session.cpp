@@ -92,10 +92,13 @@ GdalListener::GdalListener() {
 }
 
 void GdalListener::hear(int level, std::string_view text) {
+  const auto says = [&](const char* words) { return text.find(words) != text.npos; };
   // libjpeg's words for a file that ends early, and for a segment of one that does; pixels after it are grey.
-  const bool ends_early = text.find("remature end of") != text.npos && text.find("libjpeg") != text.npos;
-  pixels_are_missing_ = pixels_are_missing_ || ends_early;
-  if ((level >= CE_Failure || ends_early) && first_error_.empty())
+  const bool ends_early = says("remature end of") && says("libjpeg");
+  // libtiff's words for a tag or a directory that cannot be read.
+  const bool lacks_tags = says("IO error during reading of") || says("Failed to read directory");
+  content_is_missing_ = content_is_missing_ || ends_early || lacks_tags;
+  if ((level >= CE_Failure || ends_early || lacks_tags) && first_error_.empty())
     first_error_ = text.substr(0, text.find(" (this warning"));
 }
 
@@ -116,6 +119,9 @@ GdalDataset open_raster(const std::string& path) {
   GdalDataset dataset(GDALDataset::Open(seekable_path(path).c_str(),
                                         GDAL_OF_RASTER | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR));
   if (!dataset) refuse(path, gdal.error_about(path));
+  if (gdal.content_is_missing())
+    throw Error(ErrorCode::input, "a part of the header cannot be read: " + gdal.error_about(path), path,
+                "the file is truncated or damaged: fetch or write it again");
   check_blocks(*dataset, path);
   return dataset;
 }

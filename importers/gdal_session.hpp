@@ -24,18 +24,19 @@ class GdalListener {
   /// Returns the first error, which names the cause; empty if there was none. Removes a leading `path`.
   std::string error_about(const std::string& path) const;
 
-  /// Returns true if a decoder made up pixels that the file lacks: GDAL only warns of a JPEG that ends early.
-  bool pixels_are_missing() const { return pixels_are_missing_; }
+  /// Returns true if GDAL goes on without a part of the file: it only warns of a JPEG that ends early, whose
+  /// pixels it makes up, and of tags of a TIFF that cannot be read, such as the CRS.
+  bool content_is_missing() const { return content_is_missing_; }
 
  private:
   void hear(int level, std::string_view text);
 
   std::string first_error_;
-  bool pixels_are_missing_ = false;
+  bool content_is_missing_ = false;
 };
 
 /// Opens a raster for reading; /vsistdin/ any number of times. Throws Error{input} if the file is missing,
-/// empty or of no format that GDAL knows, with GDAL's message.
+/// empty, without a part of its header, or of no format that GDAL knows, with GDAL's message.
 GdalDataset open_raster(const std::string& path);
 
 }  // namespace waymark::importers

@@ -81,7 +81,7 @@ void read_band(GDALRasterBand& band, const Window& window, GDALDataType type, vo
                     static_cast<int>(window.columns), static_cast<int>(window.rows), into,
                     static_cast<int>(window.columns), static_cast<int>(window.rows), type, 0, 0,
                     nullptr) != CE_None ||
-      gdal.pixels_are_missing())
+      gdal.content_is_missing())
     throw Error(ErrorCode::input,
                 fmt::format("rows {} to {} of the image cannot be read: {}", window.row, window.end_row() - 1,
                             gdal.error_about(path)),

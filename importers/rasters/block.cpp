@@ -44,7 +44,8 @@ std::vector<T> read_cells(GDALRasterBand& band, const RasterHeader& header, int 
     GDALCopyWords64(raw.data(), stored, size, cells.data(), gdal_type<T>(), sizeof(T),
                     static_cast<GPtrDiff_t>(count));
   }
-  if (result != CE_None) refuse(header, column, row, gdal.error_about(header.path));
+  if (result != CE_None || gdal.content_is_missing())
+    refuse(header, column, row, gdal.error_about(header.path));
   return cells;
 }
 
@@ -58,7 +59,8 @@ void apply_mask(GDALRasterBand& band, const RasterHeader& header, int column, in
   std::vector<std::uint8_t> shown(cells.size());
   const GdalListener gdal;
   if (band.GetMaskBand()->RasterIO(GF_Read, left, top, columns, rows, shown.data(), columns, rows, GDT_Byte,
-                                   1, header.block_columns, nullptr) != CE_None)
+                                   1, header.block_columns, nullptr) != CE_None ||
+      gdal.content_is_missing())
     refuse(header, column, row, gdal.error_about(header.path));
   for (std::size_t i = 0; i < cells.size(); ++i)
     if (shown[i] == 0) cells[i] = std::numeric_limits<T>::quiet_NaN();

@@ -2,6 +2,9 @@
 // Files that are no DEM, and their messages.
 #include <gmock/gmock.h>
 
+#include <cpl_vsi.h>
+
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -28,6 +31,33 @@ std::string complaint_about(const std::string& path, const std::string& crs = {}
 
 std::string complaint_about(const RasterFile& file) {
   return complaint_about(write_raster(file));
+}
+
+/// Lets the values of a tag of a TIFF in memory, little-endian, lie beyond its end.
+void lose_tag(const std::string& path, std::uint16_t tag) {
+  vsi_l_offset bytes = 0;
+  GByte* const file = VSIGetMemFileBuffer(path.c_str(), &bytes, FALSE);
+  std::uint32_t directory = 0, beyond = static_cast<std::uint32_t>(bytes) + 1000;
+  std::memcpy(&directory, file + 4, 4);
+  std::uint16_t entries = 0, number = 0;
+  std::memcpy(&entries, file + directory, 2);
+  for (std::uint16_t i = 0; i < entries; ++i) {
+    GByte* const entry = file + directory + 2 + 12 * i;
+    std::memcpy(&number, entry, 2);
+    if (number == tag) return static_cast<void>(std::memcpy(entry + 8, &beyond, 4));
+  }
+  FAIL() << "the file has no tag " << tag;
+}
+
+// GDAL only warns, and goes on without them.
+TEST(BadDem, TagsThatTheFileLacks) {
+  for (const auto& [tag, name] : {std::pair{33550, "GeoPixelScale"}, {34735, "GeoKeyDirectory"}}) {
+    const std::string path =
+        write_raster({.path = std::string("/vsimem/") + name + ".tif", .cells = kThreeByThree});
+    lose_tag(path, static_cast<std::uint16_t>(tag));
+    EXPECT_THAT(complaint_about(path, "EPSG:32633"), AllOf(HasSubstr("a part of the header cannot be read"),
+                                                           HasSubstr(name), HasSubstr("damaged")));
+  }
 }
 
 TEST(BadDem, NothingGiven) {
