@@ -49,10 +49,11 @@ class FileImage final : public ImportedImage {
           now && now->x0 == info_.ortho->x0 && now->y0 == info_.ortho->y0 && now->dx == info_.ortho->dx &&
           now->dy == info_.ortho->dy)
         return;
-    throw Error(ErrorCode::input,
-                info_.columns == 0
-                    ? "the image could not be read when the run listed it; see the warnings of load_images"
-                    : "the image has changed since the run listed it: other size or georeference",
+    if (info_.columns == 0)
+      throw Error(ErrorCode::input,
+                  "the image could not be read when the run listed it; see the warnings of load_images",
+                  info_.path, "run again, or remove the image");
+    throw Error(ErrorCode::input, "the image has changed since the run listed it: other size or georeference",
                 info_.path, "run with --rerun-from load_images");
   }
 

@@ -156,6 +156,7 @@ struct LoadImages {
     for (const std::string& warning : listed.warnings) unit.warn(warning);
     std::vector<pipeline::ImageItem> list;
     for (ImageInfo info : listed.images) {
+      if (info.columns == 0) unit.do_not_keep();              // it could not be read this time
       const std::string path = std::exchange(info.path, {});  // the path does not change the image
       list.push_back({static_cast<std::int64_t>(list.size()), info.name, path, to_json(info)});
     }

@@ -54,6 +54,7 @@ struct UnitOutcome {
   std::map<std::string, Artifact::Value, std::less<>> outputs;  ///< by port
   Counts counts;
   std::vector<std::string> warnings;
+  bool keep = true;  ///< false: another run may give a better result
 };
 
 /// Interface of a running stage to its declared ports, its item and its report.
@@ -150,6 +151,9 @@ class StageContext {
   void count_out(std::int64_t n);
   void reject(std::string_view reason, std::int64_t n = 1);
   void warn(std::string text);
+  /// Keeps the result out of the store, since what is missing in it may be there when the next run tries
+  /// again.
+  void do_not_keep() { outcome_.keep = false; }
   /// Reports the completed fraction of this unit, [0, 1]. Cheap enough for one call per row.
   void progress(double done_fraction) const;
 

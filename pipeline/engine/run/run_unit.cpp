@@ -100,7 +100,7 @@ void Run::make(std::size_t stage, std::size_t unit, ProgressMeter& meter) {
   state.outcome = context.finish();
   warn_about_missing_inputs(stage, unit);
   if (store_ && rerun_[stage]) store_->remove(what);
-  const bool saved = store_ && !state.partial;
+  const bool saved = store_ && !state.partial && state.outcome.keep;
   if (saved) store_->save(what, spec, state.outcome);
   auto outputs = std::exchange(state.outcome.outputs, {});
   for (const OutputPort& port : spec.outputs) {

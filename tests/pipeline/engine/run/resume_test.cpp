@@ -55,6 +55,18 @@ TEST_F(ResumeTest, TheSecondRunDoesNothing) {
   EXPECT_TRUE(second.report.complete());
 }
 
+TEST_F(ResumeTest, AResultThatIsNotKeptIsMadeAgain) {
+  toy::watch().in_square = [](StageContext& unit) {
+    if (unit.tile().index == 1) unit.do_not_keep();
+  };
+  const RunResult first = go();
+  EXPECT_TRUE(first.report.complete());
+  ran();
+  const RunResult second = go();
+  EXPECT_EQ(sum_of(second), sum_of(first));
+  EXPECT_THAT(ran(), ElementsAre(0, 1, 0));
+}
+
 TEST_F(ResumeTest, AChangedOptionReachesDownstreamOnly) {
   go_before();
   pipeline.set("sum_squares.sign=&");
