@@ -198,11 +198,22 @@ void Run::release_read(std::size_t stage) {
   }
 }
 
+/// Returns whether a unit of this image succeeded.
+bool Run::is_used(const InputFile& image) const {
+  for (std::size_t i = 0; i < plan_.units.size(); ++i)
+    if (plan_.units[i].image && plan_.units[i].image->file == image.path && states_[i].ready()) return true;
+  return false;
+}
+
 RunResult Run::result() const {
   RunResult result;
   result.inputs = inputs_;
   for (const InputFile& file : image_files_)
-    if (!file.sha256.empty()) result.inputs.push_back(file);
+    if (!file.sha256.empty())
+      result.inputs.push_back(file);
+    else if (is_used(file))
+      result.report.failures.push_back(
+          {file.path, ErrorCode::input, "the image could not be read a second time, to record its hash"});
   for (std::size_t stage = 0; stage < wires_.size(); ++stage) {
     const StageSpec& spec = step(stage).spec();
     StageReport report = stage_report(plan_, states_, stage);

@@ -39,6 +39,7 @@ class Run {
   void run_stage(std::size_t stage);
   void do_unit(std::size_t stage, std::size_t unit, ProgressMeter& progress);
   bool gathers_nothing(std::size_t stage, std::size_t unit) const;
+  bool is_used(const InputFile& image) const;
   bool reuse(std::size_t stage, std::size_t unit);
   void make(std::size_t stage, std::size_t unit, ProgressMeter& progress);
   bool is_offloaded(std::size_t stage, const std::string& port) const;

@@ -154,6 +154,21 @@ TEST_F(ImageScope, AnotherPictureUnderTheSameNameIsReadAgain) {
   EXPECT_EQ(page(run(pipeline({"one", "two"}), options)), "one 1 0; two 0 4; 1004 after 2");
 }
 
+// A disk may fail once: the stage had the image, the record of the run would lack it.
+TEST_F(ImageScope, AnImageWhoseHashIsNotKnownIsNotPassedOver) {
+  RunOptions options{.work = work};
+  options.hash_file = [](const std::string& file) {
+    if (file.ends_with("two")) throw Error(ErrorCode::input, "reading the file failed", file);
+    return hash_plain_file(file);
+  };
+  const RunResult result = run(pipeline({"one", "two"}), options);
+  EXPECT_EQ(result.report.exit_code(), 3);
+  ASSERT_EQ(result.report.failures.size(), 1U);
+  EXPECT_THAT(result.report.failures[0].unit, testing::EndsWith("two"));
+  EXPECT_THAT(result.report.failures[0].message, HasSubstr("to record its hash"));
+  EXPECT_EQ(run(pipeline({"one", "two"}), {.work = work}).report.exit_code(), 0);
+}
+
 TEST_F(ImageScope, AMissingImageDoesNotStopTheRest) {
   const RunOptions options{.work = work};
   const RunResult result = run(pipeline({"one", "lost", "three"}), options);
