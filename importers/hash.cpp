@@ -6,6 +6,8 @@
 #include <gdal_priv.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -60,12 +62,18 @@ std::uint64_t add_content(const std::string& path, pipeline::Sha256& sum) {
   }
   std::uint64_t bytes = 0;
   std::string piece(kPiece, '\0');
+  errno = 0;
   while (const std::size_t count = VSIFReadL(piece.data(), 1, kPiece, file.get())) {
     sum.add({piece.data(), count});
     bytes += count;
   }
-  if (!VSIFEofL(file.get()))
-    throw Error(ErrorCode::input, "reading the file failed: " + gdal.error_about(path), path, "try again");
+  const int cause = errno;  // GDAL says nothing about a plain file
+  if (!VSIFEofL(file.get())) {
+    const std::string reason = gdal.error_about(path);
+    throw Error(ErrorCode::input,
+                "reading the file failed: " + (reason.empty() ? std::strerror(cause) : reason), path,
+                "try again");
+  }
   return bytes;
 }
 

@@ -37,6 +37,7 @@ void check_old(const fs::path& map) {
   try {
     geodb::MapStore::open(map);
   } catch (const Error& error) {
+    if (error.code() == ErrorCode::environment) throw;  // a disk that fails says nothing about the file
     throw Error(ErrorCode::output,
                 "the output exists and is no map of this version, so it is not replaced: " + error.problem(),
                 map.string(), "remove it, or choose another -o");

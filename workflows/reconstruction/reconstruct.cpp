@@ -312,6 +312,10 @@ ReconstructResult reconstruct(const ReconstructRequest& request, const Callbacks
       request.cameras.empty() ? solved_poses(request, callbacks) : given_poses(request, callbacks);
   ReconstructResult result{.images = poses.posed, .failed = poses.failed, .crs = poses.crs};
   write_report_page(folder, poses.report);
+  if (poses.failed > 0)
+    callbacks.send(MessageKind::failure,
+                   fmt::format("{} of {} images have no pose; {} names them with the reasons", poses.failed,
+                               poses.posed + poses.failed, (folder / "report.html").string()));
   if (request.until == ReconstructUntil::poses) return result;
 
   const std::vector<pipeline::SurfaceView> views = pipeline::surface_views(poses.images.images);
