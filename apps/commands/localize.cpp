@@ -66,8 +66,9 @@ class Localize final : public Command {
              Argument{"--ids", "HOW", &ids_, "Whether identities in the log are used for data association"}
                  .one_of({"known", "unknown"})
                  .or_else("known"),
-             Argument{"--start", "X,Y,YAW", &request_.start,
-                      "Where the robot starts, metres and radians; truth: as the log says; none: unknown"}
+             Argument{"--start", "X,Y,YAW[,T]", &request_.start,
+                      "Where the robot starts, metres and radians, or was at T seconds of the log; truth: as "
+                      "the log says; none: unknown"}
                  .offering({"truth", "none"})
                  .or_else("truth, or the log's start, or none for pf"),
              Argument{"--write-map", "OUT.gpkg", &request_.write_map,

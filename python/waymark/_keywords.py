@@ -65,7 +65,7 @@ DESCRIPTIONS = {'detect': {'kind': 'name of a detector: "craters"; image_detecto
               'topic': 'rosbag2, mcap: read these where a bag has several of a type',
               'robot': 'MRCLAM: which of the five; 0: the robot of the named file',
               'use_identities': 'identities in the log are used for data association',
-              'start': '"X,Y,YAW" (m, rad), "truth" or "none"; empty: the log decides',
+              'start': '"X,Y,YAW[,T]" (m, rad, s), "truth" or "none"; empty: the log decides',
               'write_map': 'slam, graph: map to write with the updates; empty: none',
               'update_map': 'slam, graph: change the map itself',
               'set': 'OPTION=VALUE, settings of the method',

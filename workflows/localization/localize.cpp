@@ -17,6 +17,7 @@
 #include "exporters/vector/track_formats.hpp"
 #include "geodb/validate_map.hpp"
 #include "localization/detectors/detected_types.hpp"
+#include "localization/replay_log.hpp"
 #include "localization/robot_log.hpp"
 #include "workflows/localization/drive_layers.hpp"
 #include "workflows/localization/exchanged_sides.hpp"
@@ -92,22 +93,58 @@ void check_distance(const localization::PoseEstimate& start, const RobotMap& map
                 "is it the right map, and is the start in the map's frame (or the log's \"frame\" \"crs\")?");
 }
 
-/// Parses "X,Y,YAW".
-localization::Pose2 parse_start(const std::string& text) {
+struct StartText {
+  localization::Pose2 pose;
+  std::optional<double> t;  ///< s, of the log; absent: its first event
+};
+
+/// Parses "X,Y,YAW" or "X,Y,YAW,T".
+StartText parse_start(const std::string& text) {
   std::vector<double> words;
   std::size_t from = 0;
   while (from <= text.size()) {
     const std::size_t comma = std::min(text.find(',', from), text.size());
-    words.push_back(parse_number("each of X,Y,YAW of --start", text.substr(from, comma - from)));
+    words.push_back(parse_number("each of X,Y,YAW,T of --start", text.substr(from, comma - from)));
     from = comma + 1;
   }
-  if (words.size() != 3)
-    throw Error(ErrorCode::usage, "--start takes X,Y,YAW, truth or none, is '" + text + "'", "",
+  if (words.size() != 3 && words.size() != 4)
+    throw Error(ErrorCode::usage, "--start takes X,Y,YAW, X,Y,YAW,T, truth or none, is '" + text + "'", "",
                 "e.g. --start 12.5,-3,1.57");
   if (!(std::abs(words[2]) <= 12.6))
     throw Error(ErrorCode::usage, fmt::format("the yaw of --start is {}: angles are radians", words[2]),
                 "--start " + text, "e.g. 1.57 for north");
-  return {words[0], words[1], localization::wrap_angle(words[2])};
+  return {{words[0], words[1], localization::wrap_angle(words[2])},
+          words.size() == 4 ? std::optional(words[3]) : std::nullopt};
+}
+
+/// Returns the pose at the first event of a log of a robot that was at `later` at time `t`: odometry leads
+/// back.
+localization::PoseEstimate before_motion(const localization::PoseEstimate& later, double t,
+                                         const localization::RobotLog& log,
+                                         const localization::ReplayOptions& play) {
+  localization::DeadReckoning driven({});
+  localization::LogReplay replay(log, driven, play);
+  for (const localization::LogEvent& event : log.events) {
+    if (event.t > t) break;
+    replay.take(event);
+    replay.forget_rows();
+  }
+  const localization::PoseEstimate motion = driven.estimate();
+  const localization::Pose2 back = inverse(motion.pose);
+  const double c = std::cos(motion.pose.yaw), s = std::sin(motion.pose.yaw);
+  Eigen::Matrix3d by_motion;
+  by_motion << -c, -s, back.y, s, -c, -back.x, 0, 0, -1;
+  return localization::predict_pose(
+      later, {.step = back, .covariance = by_motion * motion.covariance * by_motion.transpose()});
+}
+
+void check_start_time(double t, const localization::RobotLog& log, const std::string& text) {
+  const double first = log.events.front().t, last = log.events.back().t;
+  if (!(t >= first && t <= last))
+    throw Error(
+        ErrorCode::usage,
+        fmt::format("the time of --start is {:.3f} s, the log is from {:.3f} to {:.3f} s", t, first, last),
+        "--start " + text, "leave the time out for the pose at the first event");
 }
 
 Eigen::Matrix3d start_covariance(double sd, double yaw_sd) {
@@ -127,13 +164,16 @@ std::optional<localization::PoseEstimate> choose_start(const LocalizeRequest& re
   }
   localization::PoseEstimate start{{}, start_covariance(settings.start_sd, settings.start_yaw_sd)};
   if (!request.start.empty() && request.start != "truth") {
-    start.pose = parse_start(request.start);
-    return start;
+    const StartText given = parse_start(request.start);
+    start.pose = given.pose;
+    if (!given.t) return start;
+    check_start_time(*given.t, log, request.start);
+    return before_motion(start, *given.t, log, settings.play);
   }
   if (!log.truth.empty()) {
     const auto known = localization::pose_at(log.truth, log.events.front().t, 5);
     start.pose = known ? *known : log.truth.front().pose;
-    return start;
+    return known ? start : before_motion(start, log.truth.front().t, log, settings.play);
   }
   if (log.start && request.start.empty()) {
     start.pose = *log.start;

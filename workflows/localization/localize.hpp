@@ -19,8 +19,8 @@ struct LocalizeRequest {
   std::string sensor =
       {};  ///< profile of eq. 8, for `quality=paper` and maps without confidence; empty: equal weights
   importers::LogImport log_format = {};
-  bool use_identities = true;         ///< identities in the log are used for data association
-  std::string start = {};             ///< "X,Y,YAW" (m, rad), "truth" or "none"; empty: the log decides
+  bool use_identities = true;  ///< identities in the log are used for data association
+  std::string start = {};      ///< "X,Y,YAW[,T]" (m, rad, s), "truth" or "none"; empty: the log decides
   std::vector<std::string> set = {};  ///< OPTION=VALUE, settings of the method
   std::int64_t seed = 1;              ///< of all random numbers
   std::vector<std::string> dem = {};  ///< terrain under the map; empty: the map's own coverage if it has one

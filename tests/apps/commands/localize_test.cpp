@@ -248,6 +248,46 @@ TEST_F(Localize, GlobalNeedsNoStartAndPfSearchesWithoutOne) {
   EXPECT_THAT(refusal(log, 2, {"--start", "0,-6"}), HasSubstr("--start takes X,Y,YAW"));
 }
 
+TEST_F(Localize, AStartMayBeThePoseAtALaterTime) {
+  // The robot turns left for a second, then drives 2 m in two seconds.
+  const std::string log = R"({"kind":"header","version":1}
+{"kind":"odometry","t":10,"v":0,"omega":1.5707963268}
+{"kind":"odometry","t":11,"v":1,"omega":0}
+{"kind":"odometry","t":12,"v":1,"omega":0}
+{"kind":"odometry","t":13,"v":0,"omega":0}
+)";
+  const auto rows = [&](const std::string& text, const std::string& start) {
+    EXPECT_EQ(localize(text, {"--method", "odometry", "--start", start}).code, 0);
+    std::vector<std::array<double, 4>> all;  // x, y, yaw, var_x
+    std::istringstream lines(text_of(track_));
+    std::string line;
+    for (std::getline(lines, line); std::getline(lines, line);) {
+      std::array<double, 8> cell{};
+      std::istringstream cells(line);
+      for (double& c : cell) cells >> c, cells.ignore();
+      all.push_back({cell[1], cell[2], cell[6], cell[7]});
+    }
+    return all;
+  };
+  const auto track = rows(log, "5,3,1.5707963268,13");
+  ASSERT_EQ(track.size(), 4);
+  EXPECT_NEAR(track[0][0], 5, 1e-4);
+  EXPECT_NEAR(track[0][1], 1, 1e-4);
+  EXPECT_NEAR(track[0][2], 0, 1e-4);
+  EXPECT_NEAR(track[3][1], 3, 1e-4);
+  EXPECT_GT(track[0][3], rows(log, "5,1,0")[0][3]);  // odometry errs on the way back, too
+  // Truth that begins more than 5 s after the log is such a start.
+  const std::string late = R"({"kind":"header","version":1}
+{"kind":"odometry","t":0,"v":1,"omega":0}
+{"kind":"odometry","t":1,"v":0,"omega":0}
+{"kind":"odometry","t":8,"v":0,"omega":0}
+{"kind":"truth","t":8,"x":4,"y":2,"yaw":0}
+)";
+  EXPECT_NEAR(rows(late, "truth")[0][0], 3, 1e-4);
+  EXPECT_THAT(refusal(log, 2, {"--method", "odometry", "--start", "5,3,1.57,14"}),
+              HasSubstr("the time of --start is 14.000 s, the log is from 10.000 to 13.000 s"));
+}
+
 TEST_F(Localize, SettingsOutsideTheirRangeOrWithWrongNamesAreRefused) {
   const std::string log = drive_log({.steps = 4});
   EXPECT_THAT(refusal(log, 2, {"--set", "gat=0.9"}), HasSubstr("did you mean 'gate'?"));
