@@ -27,12 +27,13 @@ const std::vector<Command>& commands() {
   static const std::vector<Command> all = [&] {
     std::vector<Command> made;
     const auto add = [&](const std::string& name, const std::string& line, const std::string& older,
-                         const std::string& newer, bool edits_map = false) {
+                         const std::string& newer, bool edits_map = false,
+                         const std::vector<std::string>& inputs = {}) {
       const auto [first, second] = with(line, older, newer);
-      made.push_back({name, first, second, edits_map});
+      made.push_back({name, first, second, edits_map, inputs});
     };
     add("import", "import $IN/%.csv -o $OUT/map.gpkg --type rock --map-crs EPSG:32632", "few", "many");
-    add("run", "peaks $IN/%.tif -o $OUT/map.gpkg --work $OUT/work --tile-cells 64", "small", "large");
+    add("peaks", "peaks $IN/%.tif -o $OUT/map.gpkg --work $OUT/work --tile-cells 64", "small", "large");
     for (const char* ending :
          {"gpkg", "csv", "geojson", "kml", "shp", "fgb", "gml", "gdb", "tab", "mif", "ods", "xlsx", "sqlite"})
       add(std::string("export_") + ending,
@@ -88,6 +89,27 @@ const std::vector<Command>& commands() {
         "large");
     add("picture", "evaluate track $IN/track.csv --truth $IN/%.jsonl --picture $OUT/track.svg", "short",
         "long");
+    add("buildings", "buildings --chm $IN/%.chm.tif --trees -o $OUT/map.gpkg", "small", "large");
+    add("images",
+        "images --cameras $IN/site/cameras.json --dem $IN/site/dem.tif --crs local --find % -o $OUT/map.gpkg",
+        "rocks", "craters", false, {"simulate $IN/site.json -o $IN/site"});
+    add("job", "run $IN/site%/job.json -o $OUT/map.gpkg --work $OUT/work", "1", "2", false,
+        {"simulate $IN/site.json -o $IN/site1 --seed 1", "simulate $IN/site.json -o $IN/site2 --seed 2"});
+    add("register", "register $IN/rough.gpkg --to $IN/%.catalogue.csv --crs EPSG:32632 -o $OUT/map.gpkg",
+        "near", "far", false, {"import $IN/rough.csv -o $IN/rough.gpkg --type crater --map-crs local"});
+    add("locate", "locate $IN/moon.gpkg $IN/%.pixels.csv -o $OUT/at.csv --matches $OUT/matches.csv", "three",
+        "four", false, {"import $IN/moon.csv -o $IN/moon.gpkg --type crater --map-crs IAU_2015:30100"});
+    add("simulate_street", "simulate $IN/street.json -o $OUT --seed %", "1", "2");
+    add("train_sensor", "train sensor $IN/%.jsonl --map $IN/few.gpkg -o $OUT/sensor.json", "short", "long");
+    for (const char* ending : {"tum", "kitti", "g2o"})
+      add(std::string("localize_") + ending,
+          std::string("localize $IN/few.gpkg $IN/%.jsonl --method ekf -o $OUT/track.") + ending, "short",
+          "long");
+    made.push_back({.name = "restore",
+                    .older = with("edit $OUT/few.gpkg" + add_rock, "500800", "").first,
+                    .newer = "restore $OUT/few.gpkg",
+                    .edits_map = true,
+                    .can_repeat = false});
     return made;
   }();
   return all;

@@ -13,6 +13,8 @@ struct Command {
   std::string name;
   std::string older, newer;
   bool edits_map = false;  ///< SQLite changes a map in place: the older state is kept in a journal
+  std::vector<std::string> inputs = {};  ///< commands that make what `older` and `newer` read
+  bool can_repeat = true;                ///< whether the newer command can run on its own outputs
 };
 
 void PrintTo(const Command& command, std::ostream* out);

@@ -8,6 +8,27 @@
 #include "tests/faults/fault_commands.hpp"
 
 namespace waymark::test {
+namespace {
+
+/// Writes a map of craters in coordinates of its own, two catalogues of them in UTM, and a map of a body with
+/// two lists of craters in an image.
+void write_craters(const TempFolder& in) {
+  std::string rough = "x,y,radius\n", near = rough, far = rough, moon = rough;
+  for (int i = 0; i < 60; ++i) {
+    const double x = i * 7919 % 8009, y = i * 4729 % 8011, radius = 100 + i * 37 % 211;
+    const auto row = [](double east, double north, double size) {
+      return std::to_string(east) + "," + std::to_string(north) + "," + std::to_string(size) + "\n";
+    };
+    rough += row(x, y, radius), moon += row(x / 100, y / 200, 20 * radius);
+    near += row(500'000 + x, 5'200'000 + y, radius), far += row(510'000 + x, 5'200'000 + y, radius);
+  }
+  write_text(in / "rough.csv", rough), write_text(in / "moon.csv", moon);
+  write_text(in / "near.catalogue.csv", near), write_text(in / "far.catalogue.csv", far);
+  const std::string three = "x,y,diameter\n10,20,30\n50,60,20\n90,20,25\n";
+  write_text(in / "three.pixels.csv", three), write_text(in / "four.pixels.csv", three + "80,90,12\n");
+}
+
+}  // namespace
 
 void write_inputs(const TempFolder& in) {
   for (const auto& [name, count] : {std::pair{"few", 300}, std::pair{"many", 1500}}) {
@@ -53,6 +74,8 @@ void write_inputs(const TempFolder& in) {
   write_text(in / "forest.json", R"({"waymark_scenario": 1, "crs": "EPSG:32632", "seed": 5,
     "ground": {"cell": 1, "east": 440000, "north": 5400000, "up": 520},
     "forest": {"width": 40, "height": 30, "stands": 2, "density": 300, "cell": 0.5, "pulses": 2, "points": true}})");
+  write_text(in / "street.json", R"({"waymark_scenario": 1, "crs": "local", "street": {"length": 40}})");
+  write_craters(in);
   for (const auto& [name, side] : {std::pair{"small", 96}, std::pair{"large", 128}}) {
     std::string pixels;
     for (int i = 0; i < side * side; ++i) {

@@ -7,7 +7,11 @@
 //   WAYMARK_FAULT=full   lets this and every later call fail that needs space, with ENOSPC,
 //   WAYMARK_FAULT=short  lets this call write half of its bytes.
 // WAYMARK_FAULT=rename lets rename number WAYMARK_FAULT_AT fail with EIO.
-// The numbers of calls and of renames are written to WAYMARK_FAULT_COUNT when the process ends.
+// WAYMARK_FAULT=slow lets every call wait as on a network, for up to WAYMARK_FAULT_WAIT microseconds, by the
+// seed WAYMARK_FAULT_AT.
+// WAYMARK_FAULT=read lets read number WAYMARK_FAULT_AT of files below WAYMARK_FAULT_READS fail with EIO,
+// WAYMARK_FAULT=reads every later one, too.
+// The numbers of calls, renames and reads are written to WAYMARK_FAULT_COUNT when the process ends.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -16,6 +20,7 @@
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <climits>
@@ -30,38 +35,58 @@ namespace {
 enum class Need { space, none };  ///< whether the call needs space on the disk
 
 struct Plan {
-  std::string folder, fault;
+  std::string folder, reads, fault;
   long at = 0;
+  unsigned long wait = 1;  ///< longest wait of a slow call, microseconds
 };
 
 const Plan& plan() {
   static const Plan made = [] {
     const auto text = [](const char* name) { return std::getenv(name) ? std::getenv(name) : ""; };
-    return Plan{text("WAYMARK_FAULT_FOLDER"), text("WAYMARK_FAULT"), std::atol(text("WAYMARK_FAULT_AT"))};
+    return Plan{text("WAYMARK_FAULT_FOLDER"), text("WAYMARK_FAULT_READS"), text("WAYMARK_FAULT"),
+                std::atol(text("WAYMARK_FAULT_AT")),
+                std::max(1UL, std::strtoul(text("WAYMARK_FAULT_WAIT"), nullptr, 10))};
   }();
   return made;
 }
 
-std::atomic<long> calls = 0, renames = 0;
+std::atomic<long> calls = 0, renames = 0, reads = 0;
 
-bool is_below(const char* path) {
-  const std::string& folder = plan().folder;
+bool is_below(const char* path, const std::string& folder = plan().folder) {
   return !folder.empty() && path != nullptr && std::strncmp(path, folder.c_str(), folder.size()) == 0;
 }
 
-bool is_below(int descriptor) {
+bool is_below(int descriptor, const std::string& folder = plan().folder) {
   char link[64], path[PATH_MAX];
+  if (folder.empty()) return false;
   std::snprintf(link, sizeof link, "/proc/self/fd/%d", descriptor);
   const long length = ::readlink(link, path, sizeof path - 1);
   if (length < 0) return false;
   path[length] = 0;
-  return is_below(path);
+  return is_below(path, folder);
+}
+
+/// Counts a read of a file below the folder of reads. Returns true, with errno, if it must fail.
+bool read_fails(int descriptor) {
+  if (!is_below(descriptor, plan().reads)) return false;
+  const long number = ++reads;
+  const bool failed = plan().fault == "read"    ? number == plan().at
+                      : plan().fault == "reads" ? number >= plan().at
+                                                : false;
+  return failed && (errno = EIO, true);
+}
+
+/// Waits as a network does, by the seed and the number of the call.
+void wait_for_network(long number) {
+  const unsigned long mixed = static_cast<unsigned long>(number + 1000 * plan().at) * 2654435761UL;
+  ::usleep(static_cast<useconds_t>(mixed / 65536 % plan().wait));
 }
 
 /// Counts a call. Returns true, with errno, if it must fail.
 bool fails(Need need) {
   const long number = ++calls;
   const Plan& p = plan();
+  if (p.fault == "slow") return wait_for_network(number), false;
   if (p.at == 0 || number < p.at) return false;
   if (p.fault == "kill") ::syscall(SYS_kill, ::getpid(), SIGKILL);
   if (p.fault == "interrupt" && number == p.at) {
@@ -99,7 +124,8 @@ struct WriteCount {
   ~WriteCount() {
     const char* file = std::getenv("WAYMARK_FAULT_COUNT");
     if (file == nullptr) return;
-    const std::string text = std::to_string(calls.load()) + ' ' + std::to_string(renames.load());
+    const std::string text = std::to_string(calls.load()) + ' ' + std::to_string(renames.load()) + ' ' +
+                             std::to_string(reads.load());
     const long out = ::syscall(SYS_openat, AT_FDCWD, file, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::syscall(SYS_write, out, text.data(), text.size());
   }
@@ -166,6 +192,22 @@ size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
   static auto* const call = real<size_t(const void*, size_t, size_t, FILE*)>("fwrite");
   const bool failed = is_below(::fileno(file)) && fails(Need::space);
   return failed ? 0 : call(bytes, size, count, file);  // the C library itself finishes a short write
+}
+ssize_t read(int file, void* bytes, size_t count) {
+  static auto* const call = real<ssize_t(int, void*, size_t)>("read");
+  return read_fails(file) ? -1 : call(file, bytes, count);
+}
+ssize_t pread(int file, void* bytes, size_t count, off_t at) {
+  static auto* const call = real<ssize_t(int, void*, size_t, off_t)>("pread");
+  return read_fails(file) ? -1 : call(file, bytes, count, at);
+}
+ssize_t pread64(int file, void* bytes, size_t count, off64_t at) {
+  static auto* const call = real<ssize_t(int, void*, size_t, off64_t)>("pread64");
+  return read_fails(file) ? -1 : call(file, bytes, count, at);
+}
+size_t fread(void* bytes, size_t size, size_t count, FILE* file) {
+  static auto* const call = real<size_t(void*, size_t, size_t, FILE*)>("fread");
+  return read_fails(::fileno(file)) ? 0 : call(bytes, size, count, file);
 }
 int fsync(int file) {
   static auto* const call = real<int(int)>("fsync");
