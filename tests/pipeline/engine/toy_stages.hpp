@@ -34,8 +34,8 @@ namespace toy {
 
 /// Counters and hooks of running stages. Reset by ToyTest.
 struct Watch {
-  std::atomic<int> listed = 0, squared = 0, summed = 0;     ///< how often each stage ran
-  std::function<void(StageContext&)> in_square = {};  ///< called by square_number in every tile
+  std::atomic<int> listed = 0, squared = 0, summed = 0;  ///< how often each stage ran
+  std::function<void(StageContext&)> in_square = {};     ///< called by square_number in every tile
 };
 Watch& watch();
 
