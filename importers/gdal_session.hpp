@@ -24,8 +24,8 @@ class GdalListener {
   /// Returns the first error, which names the cause; empty if there was none. Removes a leading `path`.
   std::string error_about(const std::string& path) const;
 
-  /// Returns true if GDAL goes on without a part of the file, and only warns. It makes up the pixels of a JPEG
-  /// that ends early. It leaves out tags of a TIFF that cannot be read, such as the CRS.
+  /// Returns true if GDAL goes on without a part of the file, and only warns. It makes up the pixels of a
+  /// JPEG that ends early. It leaves out tags of a TIFF that cannot be read, such as the CRS.
   bool content_is_missing() const { return content_is_missing_; }
 
  private:
