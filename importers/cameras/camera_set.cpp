@@ -105,8 +105,8 @@ KnownLenses import_lenses(const std::string& path) {
   const CameraSource source{.path = path, .head = head_of_source(path), .interior = {}};
   KnownLenses known;
   const auto add = [&](Camera camera, double readout_time) {
-    if (std::isnan(camera.cx)) camera.cx = double(camera.columns - 1) / 2;
-    if (std::isnan(camera.cy)) camera.cy = double(camera.rows - 1) / 2;
+    if (std::isnan(camera.cx)) camera.cx = (double(camera.columns) - 1) / 2;
+    if (std::isnan(camera.cy)) camera.cy = (double(camera.rows) - 1) / 2;
     const KnownLens lens{.camera = camera, .readout_time = readout_time};
     const auto at = std::ranges::find(known.lenses, lens) - known.lenses.begin();
     if (at == std::ssize(known.lenses)) known.lenses.push_back(lens);

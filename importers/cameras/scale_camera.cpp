@@ -60,6 +60,9 @@ void check_camera(const Camera& camera, const std::string& file, const std::stri
   for (const double k : camera.distortion) finite = finite && std::isfinite(k);
   if (!finite) refuse("a number of the camera is not finite", "correct the file");
   if (camera.columns == 0) return;
+  if (camera.columns < 0 || camera.rows < 1)
+    refuse(fmt::format("the image of the camera measures {} x {} pixels", camera.columns, camera.rows),
+           "both must be positive");
   constexpr int kSamples = 16;
   int blind = 0;
   for (int r = 0; r <= kSamples; ++r)

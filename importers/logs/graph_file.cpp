@@ -175,9 +175,9 @@ class Reader {
     localization::SightingEdge edge;
     edge.value = {line.real(2), line.real(3)};
     if (line.rest.size() > 4) {
-      Eigen::Matrix2d upper;
-      upper << line.real(4), line.real(5), 0, line.real(6);
-      edge.root = root(line, upper);
+      // Not as a list of Eigen's: one that an error leaves unfinished ends a debug build.
+      const std::array v{line.real(4), line.real(5), line.real(6)};
+      edge.root = root(line, Eigen::Matrix2d{{v[0], v[1]}, {0, v[2]}});
     }
     sightings_.push_back({line.id(0), line.id(1), edge, line});
   }

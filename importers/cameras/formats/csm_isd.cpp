@@ -170,8 +170,8 @@ class IsdReader {
     std::vector<LensPair> pairs;
     for (int i = 0; i <= 20; ++i)
       for (int j = 0; j <= 20; ++j) {
-        const Eigen::Vector2d pixel(static_cast<double>(camera.columns - 1) * i / 20,
-                                    static_cast<double>(camera.rows - 1) * j / 20);
+        const Eigen::Vector2d pixel((static_cast<double>(camera.columns) - 1) * i / 20,
+                                    (static_cast<double>(camera.rows) - 1) * j / 20);
         const Eigen::Vector2d place = affine_.inverse() * (pixel - origin_);
         Eigen::Vector2d undistorted = place, distorted = place;
         if (lens.kind == "radial") undistorted = lens.radial_inverse(place);

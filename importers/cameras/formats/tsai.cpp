@@ -85,8 +85,9 @@ class TsaiReader {
   Eigen::Matrix3d axes() const {
     if (!file_.values.contains("u_direction")) return Eigen::Matrix3d::Identity();
     Eigen::Matrix3d rows;
-    rows << vector("u_direction").transpose(), vector("v_direction").transpose(),
-        vector("w_direction").transpose();
+    rows.row(0) = vector("u_direction");
+    rows.row(1) = vector("v_direction");
+    rows.row(2) = vector("w_direction");
     if (!((rows * rows.transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-6) || !(rows.determinant() > 0))
       throw Error(ErrorCode::input, "u_direction, v_direction and w_direction are no right-handed axes",
                   path_, "mirrored cameras cannot be used");
