@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Camera files without a georeference on Earth: COLMAP, Metashape, ASP, CSM. Each test catches a classic
 // mistake.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -51,6 +52,16 @@ TEST(Colmap, PosesAreWorldToCamera) {
     before += looks_along(*image.view).dot(meeting - image.view->centre().xyz) > 0;
   RecordProperty("before", before);
   EXPECT_GT(before, static_cast<int>(0.8 * static_cast<double>(set.images.size())));
+}
+
+TEST(Colmap, RefusesImagesOfNoSize) {
+  for (const char* size : {"-4 512", "512 -4", "-9223372036854775808 512", "512 0"}) {
+    write_text("images.txt", "1 1 0 0 0 0 0 5 1 a.png\n\n");
+    const std::string path =
+        write_text("cameras.txt", fmt::format("1 SIMPLE_PINHOLE {} 500 256 256\n", size));
+    EXPECT_THAT(message_of([&] { import_cameras(path, "", {.crs = "local", .camera_crs = "local"}); }),
+                HasSubstr("both must be positive"));
+  }
 }
 
 TEST(Metashape, CountsCamerasThatAreNotAligned) {
