@@ -123,7 +123,8 @@ bool is_data_set(const fs::path& folder) {
 std::vector<fs::path> entries_of(const fs::path& folder) {
   std::vector<fs::path> entries(fs::directory_iterator(folder), {});
   std::ranges::sort(entries);
-  std::ranges::stable_partition(entries, [](const fs::path& file) { return !is_main_file(file); });
+  std::stable_partition(entries.begin(), entries.end(),
+                        [](const fs::path& file) { return !is_main_file(file); });
   return entries;
 }
 

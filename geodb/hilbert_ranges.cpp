@@ -36,7 +36,7 @@ std::vector<HilbertRange> divide_hilbert_curve(std::size_t parts, const PartPosi
       if (part_bins.empty() || part_bins.back() != bin) part_bins.push_back(bin);
     });
     std::ranges::sort(part_bins);
-    part_bins.erase(std::ranges::unique(part_bins).begin(), part_bins.end());
+    part_bins.erase(std::unique(part_bins.begin(), part_bins.end()), part_bins.end());
     part_bins.shrink_to_fit();
   }
   std::vector<HilbertRange> ranges;

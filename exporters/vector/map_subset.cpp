@@ -53,9 +53,9 @@ class SubsetReader {
     const auto& [id, rows] = ranges_[part];
     const LandmarkType& type = types_[id];
     std::vector<Landmark> found;
-    map_->visit(type.name, rows, [&](Landmark&& landmark) {
+    map_->visit(type.name, rows, [&, type_id = id](Landmark&& landmark) {
       if (!is_chosen(landmark)) return;
-      landmark.type = id;
+      landmark.type = type_id;
       found.push_back(std::move(landmark));
     });
     return exporters::reproject(std::move(found), type, map_->crs(), crs_);

@@ -92,7 +92,7 @@ std::vector<std::string> targets_of(const TypeRegistry& types, const std::vector
     for (const AttributeSpec& attribute : type.attributes) targets.push_back(attribute.name);
   }
   std::ranges::sort(targets);
-  targets.erase(std::ranges::unique(targets).begin(), targets.end());
+  targets.erase(std::unique(targets.begin(), targets.end()), targets.end());
   return targets;
 }
 

@@ -162,7 +162,7 @@ void CraterIndex::make_triangles() {
     block = {};
   }
   tbb::parallel_sort(all);
-  all.erase(std::ranges::unique(all).begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   std::vector<std::uint32_t> cell(all.size());
   tbb::parallel_for(std::size_t{0}, all.size(),
                     [&](std::size_t i) { cell[i] = static_cast<std::uint32_t>(cell_of(all[i])); });

@@ -113,7 +113,7 @@ std::size_t occupied_bins(std::span<const Pose2> poses, double metres, double ra
     bins.emplace_back(std::floor(p.x / metres), std::floor(p.y / metres),
                       std::floor(wrap_angle(p.yaw) / radians));
   std::ranges::sort(bins);
-  return static_cast<std::size_t>(std::ranges::unique(bins).begin() - bins.begin());
+  return static_cast<std::size_t>(std::unique(bins.begin(), bins.end()) - bins.begin());
 }
 
 PoseEstimate dominant_mode(std::span<const Pose2> poses, std::span<const double> weights, double radius) {

@@ -138,7 +138,7 @@ std::vector<ConstellationIndex::Corners> ConstellationIndex::neighbour_triangles
       }
   }
   std::ranges::sort(all);
-  all.erase(std::ranges::unique(all).begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
 }
 
@@ -156,7 +156,7 @@ void ConstellationIndex::build() {
     by_key_.emplace(landmarks_[i].key, i);
   }
   std::ranges::sort(types_);
-  types_.erase(std::ranges::unique(types_).begin(), types_.end());
+  types_.erase(std::unique(types_.begin(), types_.end()), types_.end());
   std::ranges::nth_element(sds, sds.begin() + static_cast<std::ptrdiff_t>(sds.size() * 9 / 10));
   typical_sd_ = sds[sds.size() * 9 / 10];
   for (std::size_t k = 0; k < std::min(kSample, landmarks_.size()); ++k)

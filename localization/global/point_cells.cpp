@@ -31,7 +31,7 @@ PointCells::PointCells(std::span<const Eigen::Vector3d> points, double cell) {
   for (std::size_t i = 0; i < points.size(); ++i)
     entries_[next[bucket_of(keys[i])]++] = {points[i], keys[i], static_cast<std::uint32_t>(i)};
   std::ranges::sort(keys);
-  occupied_ = static_cast<std::size_t>(std::ranges::unique(keys).begin() - keys.begin());
+  occupied_ = static_cast<std::size_t>(std::unique(keys.begin(), keys.end()) - keys.begin());
 }
 
 }  // namespace waymark::localization

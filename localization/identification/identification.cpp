@@ -91,7 +91,7 @@ std::vector<std::uint32_t> landmarks_in_reach(const SeenLandmark& seen, const Po
     }
   }
   std::ranges::sort(found);
-  found.erase(std::ranges::unique(found).begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
   return found;
 }
 

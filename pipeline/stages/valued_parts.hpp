@@ -42,11 +42,10 @@ struct ValuedParts {
       if (finish) finish(own, own_evidence);
       unit.count_out(static_cast<std::int64_t>(own.size()));
       valued.add(own);
-      const auto first_rejected = std::ranges::stable_partition(
-          own_evidence, [](const Observation& o) { return o.rejected.empty(); });
-      dropped.add(
-          {std::make_move_iterator(first_rejected.begin()), std::make_move_iterator(first_rejected.end())});
-      own_evidence.erase(first_rejected.begin(), first_rejected.end());
+      const auto first_rejected = std::stable_partition(
+          own_evidence.begin(), own_evidence.end(), [](const Observation& o) { return o.rejected.empty(); });
+      dropped.add({std::make_move_iterator(first_rejected), std::make_move_iterator(own_evidence.end())});
+      own_evidence.erase(first_rejected, own_evidence.end());
       kept.add(own_evidence);
       unit.progress(static_cast<double>(part + 1) / static_cast<double>(all.count()));
     }

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <ranges>
 
 namespace waymark::testbed {
 namespace {
@@ -100,9 +99,8 @@ std::optional<double> RayFan::intersect_target(const Candidate& c, const Eigen::
   return random ? intersect_thicket(targets_.thickets()[c.index], origin_, along, *random) : std::nullopt;
 }
 
-template <class Candidates>
-std::optional<FanHit> RayFan::first(const Candidates& order, const Eigen::Vector3d& along, Random* random,
-                                    bool sorted) const {
+std::optional<FanHit> RayFan::first(std::span<const std::uint32_t> order, const Eigen::Vector3d& along,
+                                    Random* random, bool sorted) const {
   FanHit best{reach_, TargetKind::ground, 0};
   bool any = false;
   const double level = along.head<2>().norm();
@@ -128,8 +126,9 @@ std::optional<FanHit> RayFan::cast(const Eigen::Vector3d& along, Random* random)
 }
 
 std::optional<FanHit> RayFan::cast_exhaustively(const Eigen::Vector3d& along, Random* random) const {
-  return first(std::views::iota(std::uint32_t{0}, static_cast<std::uint32_t>(candidates_.size())), along,
-               random, false);
+  std::vector<std::uint32_t> all(candidates_.size());
+  std::iota(all.begin(), all.end(), std::uint32_t{0});
+  return first(all, along, random, false);
 }
 
 }  // namespace waymark::testbed

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 #include <optional>
+#include <span>
 #include <vector>
 #include "testbed/drive/laser_targets.hpp"
 namespace waymark::testbed {
@@ -35,9 +36,8 @@ class RayFan {
   };
   std::optional<double> intersect_target(const Candidate& c, const Eigen::Vector3d& along,
                                          Random* random) const;
-  template <class Candidates>
-  std::optional<FanHit> first(const Candidates& order, const Eigen::Vector3d& along, Random* random,
-                              bool sorted) const;
+  std::optional<FanHit> first(std::span<const std::uint32_t> order, const Eigen::Vector3d& along,
+                              Random* random, bool sorted) const;
 
   const LaserTargets& targets_;
   Eigen::Vector3d origin_;

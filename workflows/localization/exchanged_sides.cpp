@@ -71,7 +71,7 @@ class Cells {
   }
   std::int64_t count() {
     std::ranges::sort(all_);
-    return std::ranges::unique(all_).begin() - all_.begin();
+    return std::unique(all_.begin(), all_.end()) - all_.begin();
   }
 
  private:

@@ -203,7 +203,7 @@ std::vector<std::string> detected_types(const pipeline::Pipeline& pipeline) {
   for (const auto& step : pipeline.steps())
     types.insert(types.end(), step->spec().finds.begin(), step->spec().finds.end());
   std::ranges::sort(types);
-  types.erase(std::ranges::unique(types).begin(), types.end());
+  types.erase(std::unique(types.begin(), types.end()), types.end());
   return types;
 }
 

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
-#include <ranges>
+#include <sstream>
 
 #include "core/error.hpp"
 
@@ -24,8 +24,8 @@ void check_files(const ImageFiles& files, const ImageFinds& find) {
 
 ImageFinds parse_image_finds(std::string_view list) {
   ImageFinds find{.rocks = false, .craters = false};
-  for (const auto part : std::views::split(list, ',')) {
-    const std::string word(part.begin(), part.end());
+  std::istringstream words{std::string(list)};
+  for (std::string word; std::getline(words, word, ',');) {
     if (word == "rocks")
       find.rocks = true;
     else if (word == "craters")

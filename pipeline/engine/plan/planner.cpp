@@ -21,7 +21,7 @@ std::vector<std::size_t> all_units_read(const Plan& plan, const std::vector<Wire
     for (std::size_t i = first; i < last; ++i) read.push_back(i);
   }
   std::ranges::sort(read);
-  read.erase(std::ranges::unique(read).begin(), read.end());
+  read.erase(std::unique(read.begin(), read.end()), read.end());
   return read;
 }
 

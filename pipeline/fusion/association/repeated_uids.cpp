@@ -97,8 +97,8 @@ void RepeatedUids::number(PartsWriter<std::vector<Landmark>>& landmarks,
   for (const auto& [part, names] : renamed) {
     std::vector<Landmark> own = landmarks.parts().read(part);
     std::vector<Observation> seen = evidence.parts().read(part);
-    const auto rename = [&](std::string& uid) {
-      if (const auto name = names.find(uid); name != names.end()) uid = name->second;
+    const auto rename = [&new_names = names](std::string& uid) {
+      if (const auto name = new_names.find(uid); name != new_names.end()) uid = name->second;
     };
     for (Landmark& landmark : own) rename(landmark.uid);
     for (Observation& o : seen) rename(o.landmark_uid);

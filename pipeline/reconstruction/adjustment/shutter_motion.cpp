@@ -30,8 +30,8 @@ std::vector<Sequence> sequences_of(const Reconstruction& scene) {
     std::ranges::stable_sort(images, [&](std::size_t a, std::size_t b) {
       return std::pair(time(a), scene.images[a].name) < std::pair(time(b), scene.images[b].name);
     });
-    const auto same = std::ranges::unique(images, {}, time);
-    images.erase(same.begin(), same.end());
+    const auto is_same = [&](std::size_t a, std::size_t b) { return time(a) == time(b); };
+    images.erase(std::unique(images.begin(), images.end(), is_same), images.end());
     out.push_back(std::move(images));
   }
   return out;
