@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gdal_priv.h>
 
+#include <algorithm>
 #include <mutex>
 #include <string_view>
 
@@ -111,6 +112,7 @@ std::string GdalListener::error_about(const std::string& path) const {
   for (const std::string& start : {"`" + path + "' ", path + ", band 1: ", path + ": "})
     if (text.starts_with(start)) text.erase(0, start.size());
   while (text.ends_with('.') || text.ends_with('\n')) text.pop_back();
+  std::ranges::replace(text, '\n', ' ');  // of the file, which GDAL repeats
   return text;
 }
 

@@ -49,12 +49,12 @@ const std::filesystem::path& folder() {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace waymark::test;
   const std::filesystem::path path = folder() / reader().file;
-  if (waymark::write_aside(path, {reinterpret_cast<const char*>(bytes), size}) != 0)
-    end("cannot write " + path.string());
+  const std::string_view content(reinterpret_cast<const char*>(bytes), size);
+  if (waymark::write_aside(path, content) != 0) end("cannot write " + path.string());
   try {
     reader().read(path.string());
   } catch (const waymark::Error& error) {
-    if (const std::string fault = fault_of_text(error); !fault.empty()) end(fault);
+    if (const std::string fault = fault_of_text(error, content); !fault.empty()) end(fault);
   } catch (const std::exception& error) {
     end(std::string("a foreign exception: ") + error.what());
   }
