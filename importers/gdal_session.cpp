@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <mutex>
 #include <string_view>
+#include <vector>
 
 #include "core/error.hpp"
 #include "importers/standard_input.hpp"
@@ -75,6 +76,24 @@ void check_blocks(GDALDataset& dataset, const std::string& path) {
               path, "the file is damaged or hostile; a sound one can be tiled: gdal_translate -co TILED=YES");
 }
 
+/// Throws Error{input} if a row of a text grid is missing. GDAL looks for a row in all rows before it, and
+/// again for each of these that is missing, so a read of the last row of a file that ends early would not
+/// end.
+void check_rows_of_text(GDALDataset& dataset, const std::string& path) {
+  const std::string format = dataset.GetDriverName();
+  if (format != "AAIGrid" && format != "GRASSASCIIGrid" && format != "ISG") return;
+  GDALRasterBand* const band = dataset.GetRasterBand(1);
+  std::vector<double> row(static_cast<std::size_t>(band->GetXSize()));
+  for (int i = 0; i < band->GetYSize(); ++i) {
+    const GdalListener gdal;
+    if (band->ReadBlock(0, i, row.data()) != CE_None)
+      throw Error(
+          ErrorCode::input,
+          fmt::format("row {} of {} cannot be read: {}", i + 1, band->GetYSize(), gdal.error_about(path)),
+          path, "the file is truncated or damaged: fetch or write it again");
+  }
+}
+
 }  // namespace
 
 void GdalClose::operator()(GDALDataset* dataset) const {
@@ -125,6 +144,7 @@ GdalDataset open_raster(const std::string& path) {
     throw Error(ErrorCode::input, "a part of the header cannot be read: " + gdal.error_about(path), path,
                 "the file is truncated or damaged: fetch or write it again");
   check_blocks(*dataset, path);
+  check_rows_of_text(*dataset, path);
   return dataset;
 }
 

@@ -233,6 +233,7 @@ class BagReader {
                                 [](const ImuTopic& topic) { return topic.readings.size(); });
     if (chosen == topics_.imus.end()) return;
     std::vector<BagImu>& readings = chosen->second.readings;
+    if (readings.empty()) return;  // none of its messages is sound
     std::ranges::stable_sort(readings, {}, [](const BagImu& one) { return one.at.t; });
     const Eigen::Matrix3d turn = place_of(readings[0].at.frame, body).linear();
     add_turn_rates(log_, chosen->first, readings, turn, poses, lacks_yaw);

@@ -45,6 +45,14 @@ std::string uid_of(int subject) {
   return std::to_string(subject);
 }
 
+/// Returns the number of a subject. Throws Error{input} if it is no whole number.
+int subject_number(double number, const std::filesystem::path& file) {
+  if (!(std::abs(number) < 1e9) || number != std::floor(number))
+    throw Error(ErrorCode::input, fmt::format("the subject {} is no whole number", number), file.string(),
+                "fetch the file again");
+  return static_cast<int>(number);
+}
+
 /// Sightings of one camera frame: same time, nearby lines.
 class Frames {
  public:
@@ -69,17 +77,17 @@ localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std:
                 "add --robot 1");
   const auto file = [&](const char* what) { return folder / fmt::format("Robot{}_{}.dat", robot, what); };
 
-  std::map<int, int> subject_of;  // by bar code
+  std::map<double, int> subject_of;  // by bar code
   const auto codes = number_table(folder / "Barcodes.dat", 2);
   for (std::size_t i = 0; i < codes.size(); i += 2)
-    subject_of[static_cast<int>(codes[i + 1])] = static_cast<int>(codes[i]);
+    subject_of[codes[i + 1]] = subject_number(codes[i], folder / "Barcodes.dat");
 
   const std::optional<TypeId> beacon = find_self_identifying_type(types);
   Frames frames;
   std::size_t unknown = 0;
   const auto seen = number_table(file("Measurement"), 4);
   for (std::size_t i = 0; i < seen.size(); i += 4) {
-    const auto subject = subject_of.find(static_cast<int>(seen[i + 1]));
+    const auto subject = subject_of.find(seen[i + 1]);
     unknown += subject == subject_of.end();
     localization::SeenLandmark s{.type = beacon,
                                  .bearing = seen[i + 3],
@@ -119,12 +127,12 @@ localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std:
 
 std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path, TypeId type,
                                               const LandmarkType& declared) {
-  const auto rows =
-      number_table(std::filesystem::is_directory(path) ? path / "Landmark_Groundtruth.dat" : path, 5);
+  const auto file = std::filesystem::is_directory(path) ? path / "Landmark_Groundtruth.dat" : path;
+  const auto rows = number_table(file, 5);
   std::vector<Landmark> all;
   for (std::size_t i = 0; i < rows.size(); i += 5) {
     Landmark landmark;
-    landmark.uid = uid_of(static_cast<int>(rows[i]));
+    landmark.uid = uid_of(subject_number(rows[i], file));
     landmark.type = type;
     landmark.position.xyz << rows[i + 1], rows[i + 2], 0;
     landmark.covariance.diagonal() << rows[i + 3] * rows[i + 3], rows[i + 4] * rows[i + 4], 1e-4;

@@ -90,6 +90,14 @@ TEST(BadDem, Truncated) {
                     HasSubstr("truncated or damaged")));
 }
 
+// GDAL's own reading of a late row does not end there.
+TEST(BadDem, TruncatedText) {
+  std::string text = "ncols 3\nnrows 200\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
+  for (int row = 0; row < 90; ++row) text += "1.5 2.5 3.5\n";
+  EXPECT_THAT(complaint_about(write_text("cut.asc", text)),
+              AllOf(HasSubstr("row 91 of 200 cannot be read: "), HasSubstr("truncated or damaged")));
+}
+
 TEST(BadDem, DamagedInTheMiddle) {
   const std::string path = write_text("scratched.tif", "");
   write_raster(
