@@ -8,9 +8,9 @@
 #include <algorithm>
 #include <mutex>
 #include <string_view>
-#include <vector>
 
 #include "core/error.hpp"
+#include "importers/raster_file_checks.hpp"
 #include "importers/standard_input.hpp"
 
 namespace waymark::importers {
@@ -54,44 +54,6 @@ std::string refusal_of_file_system(const std::string& path) {
                 "`waymark trees` reads them by --las; elsewhere a raster of heights is needed");
   throw Error(ErrorCode::input, "this is not a raster that GDAL reads" + (said.empty() ? "" : ": " + said),
               path, "`gdalinfo --formats` lists what can be read; a damaged file must be fetched again");
-}
-
-// Deflate stores at most 1,032 bytes in one; a block may be larger than the file by this ratio.
-constexpr double kBigBlock = 64e6, kMaxRatio = 2000;
-
-/// Throws Error{input} for a block that is large and can by no means be stored in the file: reading a cell
-/// would allocate it all.
-void check_blocks(GDALDataset& dataset, const std::string& path) {
-  VSIStatBufL status;
-  if (dataset.GetRasterCount() == 0 || VSIStatL(path.c_str(), &status) != 0) return;
-  int columns = 0, rows = 0;
-  GDALRasterBand* const band = dataset.GetRasterBand(1);
-  band->GetBlockSize(&columns, &rows);
-  const double bytes =
-      static_cast<double>(columns) * rows * GDALGetDataTypeSizeBytes(band->GetRasterDataType());
-  if (bytes <= kBigBlock || bytes <= kMaxRatio * static_cast<double>(status.st_size)) return;
-  throw Error(ErrorCode::input,
-              fmt::format("the header states blocks of {} x {} cells ({:.3g} MB), but the file has {:.3g} MB",
-                          columns, rows, bytes / 1e6, static_cast<double>(status.st_size) / 1e6),
-              path, "the file is damaged or hostile; a sound one can be tiled: gdal_translate -co TILED=YES");
-}
-
-/// Throws Error{input} if a row of a text grid is missing. GDAL looks for a row in all rows before it, and
-/// again for each of these that is missing, so a read of the last row of a file that ends early would not
-/// end.
-void check_rows_of_text(GDALDataset& dataset, const std::string& path) {
-  const std::string format = dataset.GetDriverName();
-  if (format != "AAIGrid" && format != "GRASSASCIIGrid" && format != "ISG") return;
-  GDALRasterBand* const band = dataset.GetRasterBand(1);
-  std::vector<double> row(static_cast<std::size_t>(band->GetXSize()));
-  for (int i = 0; i < band->GetYSize(); ++i) {
-    const GdalListener gdal;
-    if (band->ReadBlock(0, i, row.data()) != CE_None)
-      throw Error(
-          ErrorCode::input,
-          fmt::format("row {} of {} cannot be read: {}", i + 1, band->GetYSize(), gdal.error_about(path)),
-          path, "the file is truncated or damaged: fetch or write it again");
-  }
 }
 
 }  // namespace
@@ -143,8 +105,7 @@ GdalDataset open_raster(const std::string& path) {
   if (gdal.content_is_missing())
     throw Error(ErrorCode::input, "a part of the header cannot be read: " + gdal.error_about(path), path,
                 "the file is truncated or damaged: fetch or write it again");
-  check_blocks(*dataset, path);
-  check_rows_of_text(*dataset, path);
+  check_raster_file(*dataset, path);
   return dataset;
 }
 

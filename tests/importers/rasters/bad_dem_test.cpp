@@ -90,6 +90,20 @@ TEST(BadDem, Truncated) {
                     HasSubstr("truncated or damaged")));
 }
 
+// GDAL reads what these formats lack as zeros.
+TEST(BadDem, TruncatedWithoutCompression) {
+  const GDALDatasetH tiff = GDALOpen(write_raster({.cells = random_terrain(5, 90, 90)}).c_str(), GA_ReadOnly);
+  for (const auto& [driver, name] : {std::pair{"ENVI", "cut.dat"}, {"netCDF", "cut.nc"}}) {
+    const std::string path = write_text(name, "");
+    GDALClose(GDALCreateCopy(GDALGetDriverByName(driver), path.c_str(), tiff, 0, nullptr, nullptr, nullptr));
+    EXPECT_NO_THROW(import_dem({.files = {path}, .crs = "EPSG:32633"})) << driver;
+    std::filesystem::resize_file(path, std::filesystem::file_size(path) * 2 / 3);
+    EXPECT_THAT(complaint_about(path, "EPSG:32633"), HasSubstr("truncated: fetch or write it again"))
+        << driver;
+  }
+  GDALClose(tiff);
+}
+
 // GDAL's own reading of a late row does not end there.
 TEST(BadDem, TruncatedText) {
   std::string text = "ncols 3\nnrows 200\nxllcorner 0\nyllcorner 0\ncellsize 10\n";
