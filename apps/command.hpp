@@ -70,7 +70,8 @@ struct CommandSpec {
   std::string about = {};  ///< paragraphs separated by an empty line; no line breaks inside
   std::vector<Argument> arguments = {};
   std::vector<Example> examples = {};
-  std::vector<ResultKey> result = {};  ///< of `--format json`; empty: the command prints no such object
+  std::vector<ResultKey> result = {};      ///< of `--format json`; empty: the command prints no such object
+  std::string result_option = "--format";  ///< option whose value json prints the result
 };
 
 /// Subcommand, a file of apps/commands. Its members receive its arguments.

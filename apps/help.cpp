@@ -120,7 +120,7 @@ std::string command_help(const CommandSpec& command, std::span<const Argument> g
   if (!command.about.empty()) text += "\n" + wrapped(command.about, 0);
   text += section("Arguments", command.arguments, true) + section("Options", command.arguments, false);
   text += section("Options of every command", globals, false);
-  if (!command.result.empty()) text += "\nKeys of --format json:\n";
+  if (!command.result.empty()) text += "\nKeys of " + command.result_option + " json:\n";
   for (const ResultKey& key : command.result) text += entry(key.name, key.meaning);
   if (!command.examples.empty()) text += "\nExamples:\n";
   for (const Example& example : command.examples)

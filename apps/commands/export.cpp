@@ -2,6 +2,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <map>
+
 #include "apps/command.hpp"
 #include "apps/log.hpp"
 #include "core/error.hpp"
@@ -56,19 +58,25 @@ class Export final : public Command {
                                "Memory for the spatial index of FlatGeobuf, 220 bytes a landmark; one that "
                                "would take more is left out"}
                           .or_else(std::to_string(exporters::ExportOptions{}.max_megabytes)),
-                      {"--overwrite", "", &options_.overwrite, "Replace an existing output"}},
-        .examples = {
-            {"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
-            {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
-             "A table in UTM metres"},
-            {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
-            {"waymark export forest.gpkg parcel.gpkg --aoi parcel.geojson", "A map of a part of the area"},
-            {"waymark export alps.gpkg alps.sqlite", "SQLite, with geometries and indexes of SpatiaLite"},
-            {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
-             "A table with a label for the Planetary Data System"},
-            {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
-            {"waymark export forest.gpkg trees.yaml -of beluga --type tree", "A landmark list for a robot"},
-            {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}}};
+                      {"--overwrite", "", &options_.overwrite, "Replace an existing output"},
+                      Argument{"--summary", "FORMAT", &summary_,
+                               "Form of standard output, since --format is that of the file"}
+                          .one_of({"text", "json"})
+                          .or_else("text")},
+        .examples =
+            {{"waymark export alps.gpkg alps.geojson", "For the web: longitude and latitude"},
+             {"waymark export alps.gpkg alps.csv --crs EPSG:32632 --type mountain_top",
+              "A table in UTM metres"},
+             {"waymark export mars.gpkg mars.fgb -of FlatGeobuf", "A format by name"},
+             {"waymark export forest.gpkg parcel.gpkg --aoi parcel.geojson", "A map of a part of the area"},
+             {"waymark export alps.gpkg alps.sqlite", "SQLite, with geometries and indexes of SpatiaLite"},
+             {"waymark export mars.gpkg mars.xml -of PDS4 --label LOGICAL_IDENTIFIER=urn:nasa:pds:b:c:p",
+              "A table with a label for the Planetary Data System"},
+             {"waymark export craters.gpkg craters.scc", "A crater count for craterstats"},
+             {"waymark export forest.gpkg trees.yaml -of beluga --type tree", "A landmark list for a robot"},
+             {"waymark export alps.gpkg 'pg:dbname=maps schema=alps'", "To PostGIS"}},
+        .result = result_keys(),
+        .result_option = "--summary"};
   }
 
   int run(const Session&) override {
@@ -81,17 +89,40 @@ class Export final : public Command {
     const exporters::ExportSummary done = exporters::export_map(map_, out_, options_);
     for (const std::string& warning : done.warnings) log_warning(warning);
     std::int64_t landmarks = 0;
+    std::map<std::string, std::int64_t> by_type;
     for (const exporters::ExportedLayer& layer : done.layers) {
-      log_summary(fmt::format("{} {}\n", layer.landmarks, layer.type));
+      if (!prints_json()) log_summary(fmt::format("{} {}\n", layer.landmarks, layer.type));
+      by_type[layer.type] += layer.landmarks;
       landmarks += layer.landmarks;
     }
     if (landmarks == 0 && !aoi_.empty())
       log_warning("no landmark lies in the area of interest, " + aoi_ + ": check its CRS");
-    log_summary(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
+    if (prints_json())
+      print(done.files, done.driver, done.crs, landmarks, by_type);
+    else
+      log_summary(fmt::format("{}: {}, {}\n", fmt::join(done.files, ", "), done.driver, done.crs));
     return 0;
   }
 
  private:
+  static std::vector<ResultKey> result_keys() {
+    return {{"files", ResultKind::texts, "Files that were written; none for a database"},
+            {"driver", ResultKind::text, "Format: GDAL's name, beluga, MRPT, or PostgreSQL"},
+            {"crs", ResultKind::text, "CRS of the output; null for a robot's list and a database"},
+            {"landmarks", ResultKind::integer, "Landmarks that were written"},
+            {"by_type", ResultKind::counts, "The same by type; null for a robot's list and a database"}};
+  }
+
+  bool prints_json() const { return summary_ == "json"; }
+  static void print(const std::vector<std::string>& files, const std::string& driver, const std::string& crs,
+                    std::int64_t landmarks, const std::map<std::string, std::int64_t>& by_type) {
+    print_result(result_keys(), {{"files", files},
+                                 {"driver", driver},
+                                 {"crs", text_or_null(crs)},
+                                 {"landmarks", landmarks},
+                                 {"by_type", crs.empty() ? ResultValue() : ResultValue(by_type)}});
+  }
+
   int export_to_robot(workflows::RobotFormat format) {
     if (!options_.crs.empty())
       throw Error(ErrorCode::usage,
@@ -104,7 +135,10 @@ class Export final : public Command {
                                                             .types = options_.types,
                                                             .min_confidence = options_.min_confidence,
                                                             .overwrite = options_.overwrite});
-    log_summary(fmt::format("{}: {} landmarks, {}\n", out_, count, options_.driver));
+    if (prints_json())
+      print({out_}, options_.driver, {}, count, {});
+    else
+      log_summary(fmt::format("{}: {} landmarks, {}\n", out_, count, options_.driver));
     return 0;
   }
 
@@ -118,8 +152,11 @@ class Export final : public Command {
                   "export the likely landmarks to a .gpkg first, and that map then");
     refuse_others("a database");
     const geodb::PostgresSummary done = geodb::export_to_postgres(map_, out_);
-    log_summary(
-        fmt::format("{} landmarks {}\n", done.landmarks, done.created ? "stored" : "added or updated"));
+    if (prints_json())
+      print({}, "PostgreSQL", {}, done.landmarks, {});
+    else
+      log_summary(
+          fmt::format("{} landmarks {}\n", done.landmarks, done.created ? "stored" : "added or updated"));
     if (!done.has_postgis)
       log_warning("the database has no PostGIS: geometries are stored as bytes (CREATE EXTENSION postgis)");
     return 0;
@@ -134,7 +171,7 @@ class Export final : public Command {
       throw Error(ErrorCode::usage, "--label and --area do not apply to " + output, out_, "leave them out");
   }
 
-  std::string map_, out_, aoi_;
+  std::string map_, out_, aoi_, summary_ = "text";
   exporters::ExportOptions options_;
 };
 

@@ -60,7 +60,7 @@ std::string section(const CommandSpec& command) {
                      (usage.empty() ? "" : usage.substr(1) + "\n") + ".PP\n" + plain(command.summary) + ".\n";
   if (!command.about.empty()) text += ".PP\n" + paragraphs(command.about);
   for (const Argument& argument : command.arguments) text += entry(argument);
-  if (!command.result.empty()) text += ".PP\nKeys of \\-\\-format json:\n";
+  if (!command.result.empty()) text += ".PP\nKeys of " + plain(command.result_option) + " json:\n";
   for (const ResultKey& key : command.result)
     text += ".TP\n" + bold(key.name) + "\n" + plain(key.meaning) + ".\n";
   for (const Example& example : command.examples)

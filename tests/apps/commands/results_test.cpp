@@ -41,7 +41,7 @@ class Results : public testing::Test {
  protected:
   /// Runs a command with `--format json` and returns what it prints, which has the declared keys in order.
   ResultObject result(std::vector<std::string> words) {
-    words.insert(words.end(), {"--format", "json"});
+    words.insert(words.end(), {words[0] == "export" ? "--summary" : "--format", "json"});
     const Outcome said = waymark(words);
     EXPECT_EQ(said.code, 0) << words[0] << ": " << said.err;
     ResultObject object = ResultObject::parse(said.out, nullptr, false);
@@ -173,6 +173,13 @@ class Results : public testing::Test {
     EXPECT_EQ(report["bytes"], std::filesystem::file_size(folder_ / "r.html"));
     EXPECT_EQ(report["checks"][0]["type"], "rock");
     EXPECT_THAT(result({"report", map, "-o", folder_ / "r.html"})["checks"], IsEmpty());
+    const ResultObject exported = result({"export", map, folder_ / "e.csv"});
+    EXPECT_EQ(exported["by_type"], ResultObject({{"rock", 2}}));
+    EXPECT_EQ(exported["crs"], "EPSG:32632");
+    EXPECT_EQ(exported["files"], ResultObject({folder_ / "e.csv"}));
+    const ResultObject robot = result({"export", map, folder_ / "e.yaml", "-of", "beluga"});
+    EXPECT_EQ(robot["landmarks"], 2);
+    EXPECT_TRUE(robot["crs"].is_null() && robot["by_type"].is_null());
     const ResultObject item = result({"stac", map, "-o", folder_ / "item.json"});
     EXPECT_EQ(item["items"], ResultObject({folder_ / "item.json"}));
     EXPECT_TRUE(item["collection"].is_null());
