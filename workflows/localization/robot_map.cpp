@@ -216,7 +216,7 @@ OpenedMap open_robot_map(const std::string& file, const SensorProfile* sensor, b
                .bounds = {}};
   if (map.landmarks == 0 && !may_be_empty)
     throw Error(ErrorCode::input, "the map has no landmarks: there is nothing to find the way by", file,
-                "use --method odometry, or another map");
+                "give a map with landmarks; `waymark localize --method odometry` needs none");
   if (map.landmarks <= kMaxReadAtOnce || map.crs().kind() == CrsKind::geographic) {
     const std::vector<Landmark> all = store->query({.min_confidence = min_confidence});
     if (all.empty() && !may_be_empty)
