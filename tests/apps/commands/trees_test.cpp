@@ -221,6 +221,12 @@ TEST_F(Trees, AreNotSeenInElevations) {
       waymark({"detect", "trees", make_dem(folder_ / "dem.tif", mountains), "-o", folder_ / "trees.csv"});
   ASSERT_EQ(made.code, 0) << made.err;
   EXPECT_THAT(made.err, HasSubstr("but heights of trees above ground are 3 to 120 m"));
+  // Brightnesses of 16 bits, some of them dark.
+  mountains.height = [](int, int row) { return 500.0 * row; };
+  EXPECT_THAT(
+      waymark({"detect", "trees", make_dem(folder_ / "grey.tif", mountains), "-o", folder_ / "trees.csv"})
+          .err,
+      HasSubstr("but heights of trees above ground are 3 to 120 m"));
 }
 
 TEST_F(Trees, TakeDiametersFromAFittedTable) {

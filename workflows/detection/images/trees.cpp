@@ -181,12 +181,16 @@ std::vector<TreeCandidate> detect_by_network(const DetectionPlan& plan, double m
   return kept;
 }
 
-/// Warns if the pixels of a band without trees are all too high or too low for heights above ground.
+// A tower or an outlier may stand above the trees.
+constexpr double kFarAboveTrees = 5;
+
+/// Warns if the pixels of a band without trees are too high or too low for heights above ground.
 void check_heights(const ImageSource& image, std::vector<std::string>& warnings) {
   const Brightness seen = measure_brightness(image);
   if (seen.no_data == seen.pixels) {
     warnings.push_back("the image has no data");
   } else if (static_cast<double>(seen.darkest) > pipeline::kTallestTree ||
+             static_cast<double>(seen.brightest) > kFarAboveTrees * pipeline::kTallestTree ||
              static_cast<double>(seen.brightest) < pipeline::TreeSearch{}.forest.tops.min_height) {
     warnings.push_back(fmt::format(
         "its values are {:g} to {:g}, but heights of trees above ground are {:g} to {:g} m", seen.darkest,
