@@ -55,10 +55,17 @@ CallResources parse_words(const std::string& words, CallResources asked, const s
   return asked;
 }
 
+void replace_named(CallResources& resources, const CallResources& named) {
+  if (named.processors > 0) resources.processors = named.processors;
+  if (named.megabytes > 0) resources.megabytes = named.megabytes;
+  if (named.minutes > 0) resources.minutes = named.minutes;
+}
+
 }  // namespace
 
 std::map<std::string, CallResources> parse_resources(std::span<const std::string> texts,
-                                                     std::span<const std::string> stages) {
+                                                     std::span<const std::string> stages,
+                                                     std::map<std::string, CallResources> measured) {
   std::map<std::string, CallResources> all;
   for (const bool of_stages : {false, true})
     for (const std::string& text : texts) {
@@ -73,6 +80,11 @@ std::map<std::string, CallResources> parse_resources(std::span<const std::string
         refuse_resources(of_stages ? fmt::format("'{}' is given twice", stage) : "all calls are given twice",
                          text);
     }
+  for (auto& [stage, resources] : measured) {
+    const auto own = all.contains(stage) ? all.find(stage) : all.find("");
+    if (own != all.end()) replace_named(resources, own->second);
+    all[stage] = resources;
+  }
   return all;
 }
 

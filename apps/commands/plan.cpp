@@ -2,6 +2,7 @@
 #include "pipeline/engine/runner.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <iostream>
 
@@ -9,6 +10,7 @@
 #include "apps/console.hpp"
 #include "core/error.hpp"
 #include "workflows/call_resources.hpp"
+#include "workflows/mapping/call_costs.hpp"
 #include "workflows/mapping/make_map.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/registries.hpp"
@@ -45,20 +47,22 @@ class PlanJob final : public Command {
                  .offering(workflows::all_sensors().names()),
              Argument{"--shards", "N", &shards_, "Most calls per stage: arrays of a site are limited"}
                  .or_else("64"),
-             {"--resources", "[STAGE:]cpus=N,memory=G,time=MIN", &resources_,
-              "Processors, memory and time that each call asks for; with STAGE or `map` those of one stage; "
-              "may be "
-              "repeated"},
+             {"--resources", "measured|[STAGE:]cpus=N,memory=G,time=MIN", &resources_,
+              "Processors, memory and time that each call asks for; with STAGE or `map` those of one stage. "
+              "measured: by what runs with this --work folder took. May be repeated"},
              {"--set", "STAGE.OPTION=VALUE", &settings_, "Change an option of the job; may be repeated"},
              {"--confined", "", &confined_, "Refuse a job that names files outside its folder"}},
-        .examples = {{"waymark plan job.json --format jsonl", "One unit per line, done or not"},
-                     {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
-                      "Run by Snakemake"},
-                     {"waymark plan job.json --format slurm -o map.gpkg --resources cpus=1,memory=2G,time=60 "
-                      "--resources "
-                      "map:memory=8G | sh",
-                      "Run on a Slurm cluster"},
-                     {"waymark plan job.json --format parallel -o map.gpkg | sh", "Run by GNU parallel"}}};
+        .examples = {
+            {"waymark plan job.json --format jsonl", "One unit per line, done or not"},
+            {"waymark plan job.json --format snakemake -o map.gpkg > Snakefile && snakemake -j 8",
+             "Run by Snakemake"},
+            {"waymark plan job.json --format slurm -o map.gpkg --resources cpus=1,memory=2G,time=60 "
+             "--resources "
+             "map:memory=8G | sh",
+             "Run on a Slurm cluster"},
+            {"waymark plan job.json --format slurm -o map.gpkg --resources measured --resources time=4h",
+             "Ask for what a run of a part of the data took, and for four hours"},
+            {"waymark plan job.json --format parallel -o map.gpkg | sh", "Run by GNU parallel"}}};
   }
 
   int run(const Session& session) override {
@@ -75,15 +79,17 @@ class PlanJob final : public Command {
     const workflows::Callbacks callbacks = console_callbacks(session);
     for (const std::string& warning : job.pipeline.warnings()) callbacks.warning(warning);
     const pipeline::Plan units = pipeline::plan(job.pipeline, workflows::run_options(request, callbacks));
-    const pipeline::PlanCommand call{.job = job_,
-                                     .work = work_,
-                                     .options = options_of_calls(session),
-                                     .settings = settings_,
-                                     .map = map_,
-                                     .sensor = sensor_,
-                                     .confined = confined_,
-                                     .max_shards = static_cast<std::size_t>(shards_),
-                                     .resources = workflows::parse_resources(resources_, stages_of(units))};
+    const auto measured = take_measured(units, callbacks);
+    const pipeline::PlanCommand call{
+        .job = job_,
+        .work = work_,
+        .options = options_of_calls(session),
+        .settings = settings_,
+        .map = map_,
+        .sensor = sensor_,
+        .confined = confined_,
+        .max_shards = static_cast<std::size_t>(shards_),
+        .resources = workflows::parse_resources(resources_, stages_of(units), measured)};
     std::cout << (format_ == "snakemake"  ? pipeline::plan_as_snakemake(units, call)
                   : format_ == "slurm"    ? pipeline::plan_as_slurm(units, call)
                   : format_ == "parallel" ? pipeline::plan_as_parallel(units, call)
@@ -92,6 +98,19 @@ class PlanJob final : public Command {
   }
 
  private:
+  /// Removes the word `measured` of --resources; returns what it stands for.
+  std::map<std::string, pipeline::CallResources> take_measured(const pipeline::Plan& units,
+                                                               const workflows::Callbacks& callbacks) {
+    if (std::erase(resources_, "measured") == 0) return {};
+    workflows::MeasuredResources found =
+        workflows::measured_resources(work_, units, static_cast<std::size_t>(shards_));
+    if (map_.empty()) std::erase(found.unknown, "map");
+    if (!found.unknown.empty())
+      callbacks.warning(
+          fmt::format("no run with --work {} measured {}: their calls ask for what else --resources says",
+                      work_, fmt::join(found.unknown, ", ")));
+    return std::move(found.by_stage);
+  }
   /// Without these a call would open other files than the plan, or none.
   static std::vector<std::string> options_of_calls(const Session& session) {
     std::vector<std::string> words;

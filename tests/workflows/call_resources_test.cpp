@@ -38,6 +38,21 @@ TEST(CallResources, StagesInheritWhatTheyDoNotName) {
   EXPECT_TRUE(parse({}).empty());
 }
 
+TEST(CallResources, WordsReplaceWhatWasMeasured) {
+  const std::map<std::string, pipeline::CallResources> measured{{"join", {2, 700, 5}}, {"map", {1, 300, 2}}};
+  const auto parse_all = [&](const std::vector<std::string>& texts) {
+    return parse_resources(texts, kStages, measured);
+  };
+  EXPECT_EQ(parse_all({}).at("join").megabytes, 700);
+  const auto all = parse_all({"time=60", "join:memory=2G"});
+  EXPECT_EQ(all.at("join").megabytes, 2000);
+  EXPECT_EQ(all.at("join").processors, 2);
+  EXPECT_EQ(all.at("join").minutes, 60);
+  EXPECT_EQ(all.at("map").megabytes, 300);
+  EXPECT_EQ(all.at("map").minutes, 60);
+  EXPECT_EQ(all.at("").minutes, 60);
+}
+
 TEST(CallResources, NonsenseIsRefused) {
   EXPECT_THAT(message_of_texts({"memory=8"}), HasSubstr("usage: memory=8 has no unit"));
   EXPECT_THAT(message_of_texts({"memory=-8G"}), HasSubstr("is no amount"));

@@ -16,6 +16,7 @@
 #include "pipeline/craters/dem_blocks.hpp"
 #include "workflows/file_access.hpp"
 #include "workflows/mapping/assemble_map.hpp"
+#include "workflows/mapping/call_costs.hpp"
 #include "workflows/output_path.hpp"
 #include "workflows/provenance.hpp"
 #include "workflows/registries.hpp"
@@ -189,17 +190,21 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
   for (const InputFile& input : result.inputs)
     callbacks.send(MessageKind::detail, fmt::format("{}  {}", input.sha256, input.path));
   send_report(result.report, callbacks);
+  keep_costs(options, result.report, 0);
   if (request.map.empty()) return made;
   if (!has_all_landmarks(job.pipeline, result)) {
     callbacks.summary(request.map + " is not written: some units of work are missing\n");
     return made;
   }
+  const auto done = std::chrono::steady_clock::now();
   geodb::RunRecord record = run_record(job, result, request.command_line, started);
   if (sensor) record_sensor(record.job_json, *sensor);
   const geodb::MapContents contents =
       assemble_map(result, *options.types, std::move(record), request.with_dem);
   made.landmarks = geodb::write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
   made.written = true;
+  const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - done;
+  keep_costs(options, result.report, writing.count());
   callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));
   return made;
 }
