@@ -12,6 +12,7 @@ namespace waymark::test {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 /// A job of a thousand tiles and a program on the PATH that is killed ten times.
 class Schedulers : public testing::Test {
@@ -109,7 +110,7 @@ class ClusterTutorial : public testing::Test {
         blocks_.back() += line + "\n";
       }
     }
-    ASSERT_EQ(blocks_.size(), 6U);
+    ASSERT_EQ(blocks_.size(), 7U);
     if (bash("command -v gdal_translate").code != 0) GTEST_SKIP() << "needs gdal-bin";
     bash("mkdir '" + (folder_ / "bin") + "' && ln -s \"$WAYMARK\" '" + (folder_ / "bin/waymark") +
          "' && cp -r '" + WAYMARK_SOURCE_DIR + "/sample_data' '" + folder_.path().string() + "'");
@@ -127,6 +128,11 @@ class ClusterTutorial : public testing::Test {
     const Outcome same = follow(blocks_[5]);
     EXPECT_EQ(same.code, 0) << same.err;
     EXPECT_THAT(same.out, HasSubstr("the same landmarks"));
+    const Outcome planned = follow(blocks_[6]);
+    EXPECT_EQ(planned.code, 0) << planned.err;
+    EXPECT_THAT(planned.err, Not(HasSubstr("measured")));  // nothing that is left is unknown
+    EXPECT_THAT(text_of(folder_ / "cluster/measured.sh"),
+                testing::ContainsRegex("name=map .*--mem=[0-9]+00M --time=120"));
   }
 
   TempFolder folder_;
@@ -138,7 +144,8 @@ TEST_F(ClusterTutorial, WithSlurm) {
   if (bash(site + "--available").code != 0)
     GTEST_SKIP() << "needs root, slurmctld, slurmd, slurm-client and munge";
   write_text(folder_ / "cluster/lines",
-             blocks_[2] + "while [ -n \"$(squeue --noheader)\" ]; do sleep 0.2; done\n");
+             blocks_[2] + "while [ -n \"$(squeue --noheader)\" ]; do sleep 0.2; done\n" + blocks_[6] +
+                 "sh measured.sh; while [ -n \"$(squeue --noheader)\" ]; do sleep 0.2; done\n");
   const Outcome ran = follow(site + "'sh lines'");
   EXPECT_EQ(ran.code, 0) << ran.err;
   expect_same_landmarks();

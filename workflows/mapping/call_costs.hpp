@@ -21,8 +21,9 @@ struct MeasuredResources {
   std::vector<std::string> unknown;  ///< stages of which no cost is kept, unless all is done
 };
 
-/// Returns the threads of the costliest run, 1.5 times its memory and 3 times the time of the units of a
-/// call, at least 100 MB and a minute. A stage over tiles or images has at most `max_shards` calls.
+/// Returns what each call needs by the largest costs that are kept: their threads, 1.5 times the memory, 3
+/// times the time. A call asks for 100 MB and a minute at least. A stage over tiles or images has at most
+/// `max_shards` calls.
 MeasuredResources measured_resources(const std::filesystem::path& work, const pipeline::Plan& plan,
                                      std::size_t max_shards);
 
