@@ -61,11 +61,10 @@ const char* group_name(Group group) {
 
 /// Returns the declarations of commands and global options as JSON, from which other programs make forms:
 /// {"version": ..., "globals": [...], "commands": [{"name", "group", "summary", "about", "arguments",
-/// "examples", "result"}]}. "result" lists the keys of what the command prints with `--format json`
-/// (`export`:
-/// `--summary json`): "name", "kind" (of ResultKind), "meaning". An argument has "names" (none: a positional
-/// word), "value", "kind" (flag, integer, number, numbers, text, texts), "help", "required", and if there are
-/// any "choices", "suggestions", "offer" (file, folder), "default".
+/// "examples", "result"}]}. "result" lists the keys of what the command prints with `--format json`, `export`
+/// with `--summary json`: "name", "kind" (of ResultKind), "meaning". An argument has "names" (none: a
+/// positional word), "value", "kind" (flag, integer, number, numbers, text, texts), "help", "required", and
+/// if there are any "choices", "suggestions", "offer" (file, folder), "default".
 std::string commands_as_json(std::span<const CommandSpec> commands, std::span<const Argument> globals) {
   CommandJson list = CommandJson::array();
   for (const CommandSpec& command : commands) {

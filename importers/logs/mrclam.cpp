@@ -45,11 +45,11 @@ std::string uid_of(int subject) {
   return std::to_string(subject);
 }
 
-/// Returns the number of a subject. Throws Error{input} if it is no whole number.
-int subject_number(double number, const std::filesystem::path& file) {
+/// Returns the number of a subject or bar code. Throws Error{input} if it is no whole number.
+int whole_number(double number, const std::filesystem::path& file) {
   if (!(std::abs(number) < 1e9) || number != std::floor(number))
-    throw Error(ErrorCode::input, fmt::format("the subject {} is no whole number", number), file.string(),
-                "fetch the file again");
+    throw Error(ErrorCode::input, fmt::format("the subject or bar code {} is no whole number", number),
+                file.string(), "fetch the file again");
   return static_cast<int>(number);
 }
 
@@ -78,16 +78,17 @@ localization::RobotLog import_mrclam_log(const std::filesystem::path& path, std:
   const auto file = [&](const char* what) { return folder / fmt::format("Robot{}_{}.dat", robot, what); };
 
   std::map<double, int> subject_of;  // by bar code
-  const auto codes = number_table(folder / "Barcodes.dat", 2);
+  const auto code_file = folder / "Barcodes.dat";
+  const auto codes = number_table(code_file, 2);
   for (std::size_t i = 0; i < codes.size(); i += 2)
-    subject_of[codes[i + 1]] = subject_number(codes[i], folder / "Barcodes.dat");
+    subject_of[whole_number(codes[i + 1], code_file)] = whole_number(codes[i], code_file);
 
   const std::optional<TypeId> beacon = find_self_identifying_type(types);
   Frames frames;
   std::size_t unknown = 0;
   const auto seen = number_table(file("Measurement"), 4);
   for (std::size_t i = 0; i < seen.size(); i += 4) {
-    const auto subject = subject_of.find(seen[i + 1]);
+    const auto subject = std::isnan(seen[i + 1]) ? subject_of.end() : subject_of.find(seen[i + 1]);
     unknown += subject == subject_of.end();
     localization::SeenLandmark s{.type = beacon,
                                  .bearing = seen[i + 3],
@@ -132,7 +133,7 @@ std::vector<Landmark> import_mrclam_landmarks(const std::filesystem::path& path,
   std::vector<Landmark> all;
   for (std::size_t i = 0; i < rows.size(); i += 5) {
     Landmark landmark;
-    landmark.uid = uid_of(subject_number(rows[i], file));
+    landmark.uid = uid_of(whole_number(rows[i], file));
     landmark.type = type;
     landmark.position.xyz << rows[i + 1], rows[i + 2], 0;
     landmark.covariance.diagonal() << rows[i + 3] * rows[i + 3], rows[i + 4] * rows[i + 4], 1e-4;

@@ -37,7 +37,9 @@ fs::path folder_of(const fs::path& work, const std::string& stage) {
   return work / "costs" / stage;
 }
 
+// In place, which costs a call no rename and no flush: a file that a kill leaves incomplete is not read.
 void keep(const pipeline::RunOptions& options, const std::string& stage, const Cost& cost) {
+  if (options.work.empty()) return;
   const std::string part = options.shard ? fmt::format("{}_of_{}", options.shard->index, options.shard->count)
                            : options.unit.empty() ? "all"
                                                   : "unit";
@@ -98,26 +100,29 @@ double megabytes_of_process() {
   return static_cast<double>(used.ru_maxrss) * 1024 / 1e6;
 }
 
-}  // namespace
-
-void keep_costs(const pipeline::RunOptions& options, const pipeline::RunReport& report, double map_seconds) {
-  if (options.work.empty()) return;
-  Cost cost{.megabytes = megabytes_of_process(),
-            .threads = options.threads > 0
-                           ? options.threads
-                           : std::max(1, static_cast<int>(std::thread::hardware_concurrency()))};
+Cost cost_of(const pipeline::RunOptions& options, const pipeline::RunReport& report,
+             double seconds_per_unit) {
   double of_units = 0;
   for (const pipeline::StageReport& stage : report.stages)
     if (stage.made > 0) of_units += stage.seconds;
-  cost.seconds_of_call = std::max(0.0, report.seconds - of_units);
-  for (const pipeline::StageReport& stage : report.stages) {
-    if (stage.made == 0) continue;
-    cost.seconds_per_unit = stage.seconds / static_cast<double>(stage.made);
-    keep(options, stage.stage, cost);
-  }
-  if (map_seconds <= 0) return;
-  cost.seconds_per_unit = map_seconds;
-  keep(options, kMapCall, cost);
+  const int all_processors = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  return {.seconds_per_unit = seconds_per_unit,
+          .seconds_of_call = std::max(0.0, report.seconds - of_units),
+          .megabytes = megabytes_of_process(),
+          .threads = options.threads > 0 ? options.threads : all_processors};
+}
+
+}  // namespace
+
+void keep_costs(const pipeline::RunOptions& options, const pipeline::RunReport& report) {
+  for (const pipeline::StageReport& stage : report.stages)
+    if (stage.made > 0)
+      keep(options, stage.stage, cost_of(options, report, stage.seconds / static_cast<double>(stage.made)));
+}
+
+void keep_cost_of_map(const pipeline::RunOptions& options, const pipeline::RunReport& report,
+                      double seconds) {
+  keep(options, kMapCall, cost_of(options, report, seconds));
 }
 
 MeasuredResources measured_resources(const fs::path& work, const pipeline::Plan& plan,

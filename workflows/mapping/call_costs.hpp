@@ -9,16 +9,17 @@
 #include "pipeline/engine/runner.hpp"
 namespace waymark::workflows {
 
-/// Keeps in the work folder what a run took: per stage of which it made units, and for the map if it wrote
-/// one
-/// (`map_seconds`, 0: none). Memory is the largest of this process. A cost that cannot be written is left
-/// out, since no result depends on it.
-void keep_costs(const pipeline::RunOptions& options, const pipeline::RunReport& report, double map_seconds);
+/// Keeps in the work folder what the stages took whose units a run made. Memory is the largest of this
+/// process. A cost that cannot be written is left out, since no result depends on it.
+void keep_costs(const pipeline::RunOptions& options, const pipeline::RunReport& report);
+
+/// Keeps in the same way what a run took that wrote the map, `seconds` of them for the map itself.
+void keep_cost_of_map(const pipeline::RunOptions& options, const pipeline::RunReport& report, double seconds);
 
 /// What the calls of a plan ask for, by the costs kept in its work folder.
 struct MeasuredResources {
   std::map<std::string, pipeline::CallResources> by_stage;  ///< "map": the call that writes the map
-  std::vector<std::string> unknown;  ///< stages of which no cost is kept, unless all is done
+  std::vector<std::string> unknown;                         ///< stages with units to do and no kept cost
 };
 
 /// Returns what each call needs by the largest costs that are kept: their threads, 1.5 times the memory, 3

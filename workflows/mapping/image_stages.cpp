@@ -24,7 +24,8 @@ void check_files(const ImageFiles& files, const ImageFinds& find) {
 
 ImageFinds parse_image_finds(std::string_view list) {
   ImageFinds find{.rocks = false, .craters = false};
-  std::istringstream words{std::string(list)};
+  // The last comma keeps an empty last word, which is refused.
+  std::istringstream words(list.empty() ? "" : std::string(list) + ',');
   for (std::string word; std::getline(words, word, ',');) {
     if (word == "rocks")
       find.rocks = true;

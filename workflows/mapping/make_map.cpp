@@ -190,7 +190,7 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
   for (const InputFile& input : result.inputs)
     callbacks.send(MessageKind::detail, fmt::format("{}  {}", input.sha256, input.path));
   send_report(result.report, callbacks);
-  keep_costs(options, result.report, 0);
+  keep_costs(options, result.report);
   if (request.map.empty()) return made;
   if (!has_all_landmarks(job.pipeline, result)) {
     callbacks.summary(request.map + " is not written: some units of work are missing\n");
@@ -204,7 +204,7 @@ MapResult make_map(const pipeline::Job& job, const MapRequest& request, const Ca
   made.landmarks = geodb::write_map(request.map, contents, {.empty_tables = detected_types(job.pipeline)});
   made.written = true;
   const std::chrono::duration<double> writing = std::chrono::steady_clock::now() - done;
-  keep_costs(options, result.report, writing.count());
+  keep_cost_of_map(options, result.report, writing.count());
   callbacks.summary(summarize_run(result, contents, made.landmarks, request.map));
   return made;
 }

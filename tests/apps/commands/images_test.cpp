@@ -90,6 +90,7 @@ TEST_F(Images, RefuseWhatMakesNoJob) {
   for (const auto& [words, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
            {{}, "no images are given"},
            {{"a.png", "--find", "rocks,trees"}, "--find does not know 'trees'"},
+           {{"a.png", "--find", "rocks,"}, "--find does not know ''"},
            {{"a.png", "--find", ""}, "--find names no landmarks"},
            {{"a.png", "--find", "mountain_tops"}, "pass --dem"}}) {
     const Outcome said = images(words);

@@ -61,7 +61,7 @@ TEST_F(CallCosts, AreUnknownBeforeARun) {
 TEST_F(CallCosts, GrowWithTheUnitsOfACall) {
   // 40 s of each unit, 20 s of the call itself.
   keep_costs(options(),
-             {.stages = {made("find", 5, 200), made("join", 0, 7)}, .failures = {}, .seconds = 220}, 0);
+             {.stages = {made("find", 5, 200), made("join", 0, 7)}, .failures = {}, .seconds = 220});
   const MeasuredResources ten = measured(10), four = measured(4), one = measured(1);
   EXPECT_THAT(ten.unknown, ElementsAre("join", "map"));
   EXPECT_EQ(ten.by_stage.at("find").minutes, 3);   // 3 * (20 + 40) s
@@ -76,7 +76,7 @@ TEST_F(CallCosts, AreTheLargestOfAllParts) {
   pipeline::RunOptions part = options(1);
   for (const auto& [index, seconds] : {std::pair{1, 30.0}, {2, 300.0}, {3, 60.0}}) {
     part.shard = pipeline::Shard{index, 3};
-    keep_costs(part, {.stages = {made("find", 1, seconds)}, .failures = {}, .seconds = seconds}, 0);
+    keep_costs(part, {.stages = {made("find", 1, seconds)}, .failures = {}, .seconds = seconds});
   }
   EXPECT_EQ(measured(10).by_stage.at("find").minutes, 15);
   std::ofstream(folder_ / "costs/find/4_of_3.json") << "{\"megabytes\": -1";  // damaged: not read
@@ -84,14 +84,14 @@ TEST_F(CallCosts, AreTheLargestOfAllParts) {
 }
 
 TEST_F(CallCosts, OfTheMapAreThoseOfWritingIt) {
-  keep_costs(options(), {.stages = {}, .failures = {}, .seconds = 10}, 50);
+  keep_cost_of_map(options(), {.stages = {}, .failures = {}, .seconds = 10}, 50);
   EXPECT_EQ(measured(4).by_stage.at("map").minutes, 3);
 }
 
 TEST_F(CallCosts, AreNotKeptWithoutAWorkFolder) {
   pipeline::RunOptions nowhere = options();
   nowhere.work.clear();
-  keep_costs(nowhere, {.stages = {made("find", 5, 200)}, .failures = {}, .seconds = 200}, 1);
+  keep_costs(nowhere, {.stages = {made("find", 5, 200)}, .failures = {}, .seconds = 200});
   EXPECT_THAT(measured(4).by_stage, IsEmpty());
 }
 
