@@ -82,6 +82,8 @@ CPLStringList layer_options(const VectorFormat& format, const Crs& crs) {
     options.SetNameValue("STRING_QUOTING", "IF_NEEDED");  // otherwise integers are quoted
   if (!format.has_index) options.SetNameValue("SPATIAL_INDEX", "NO");
   if (format.driver == "ESRI Shapefile") options.SetNameValue("ENCODING", "UTF-8");
+  // Undefined and Cartesian, for SpatiaLite; by default GDAL writes 0, undefined degrees.
+  if (format.driver == "SQLite" && crs.kind() == CrsKind::local) options.SetNameValue("SRID", "-1");
   return options;
 }
 

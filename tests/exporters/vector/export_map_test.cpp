@@ -235,6 +235,18 @@ TEST_F(ExportMap, SqliteKeepsAPlanetaryCrs) {
   EXPECT_NEAR(crs->GetSemiMajor(), 3396190, 1);
 }
 
+TEST_F(ExportMap, SqliteOfALocalMapIsCartesian) {
+  test::write_crater_map(folder / "local.gpkg", "local", 0, 0, 20000);
+  export_map(folder / "local.gpkg", out("local.sqlite"));
+  EXPECT_EQ(open("local.sqlite")->GetLayer(0)->GetSpatialRef(), nullptr);
+  const auto answer = [&](const char* sql) { return spatialite_answer(out("local.sqlite"), sql); };
+  if (answer("SELECT 1") == "no SpatiaLite")
+    GTEST_SKIP() << "no SpatiaLite: apt install libsqlite3-mod-spatialite";
+  EXPECT_EQ(answer("SELECT ST_SRID(geometry) || ' ' || ref_sys_name FROM crater, spatial_ref_sys "
+                   "WHERE srid = ST_SRID(geometry)"),
+            "-1 Undefined - Cartesian");
+}
+
 TEST_F(ExportMap, SqliteHoldsSeveralTypes) {
   const ExportSummary summary = export_map(two, out("both.sqlite"));
   EXPECT_THAT(summary.files, ElementsAre(out("both.sqlite")));
