@@ -129,16 +129,18 @@ class Export final : public Command {
                   "a robot's landmark list is in metres of the local frame: --crs does not apply", out_,
                   "leave it out");
     refuse_others("a robot's landmark list");
-    const std::int64_t count = workflows::export_robot_map({.map = map_,
-                                                            .output = out_,
-                                                            .format = format,
-                                                            .types = options_.types,
-                                                            .min_confidence = options_.min_confidence,
-                                                            .overwrite = options_.overwrite});
+    const workflows::ExportedRobotMap done =
+        workflows::export_robot_map({.map = map_,
+                                     .output = out_,
+                                     .format = format,
+                                     .types = options_.types,
+                                     .min_confidence = options_.min_confidence,
+                                     .overwrite = options_.overwrite});
+    for (const std::string& warning : done.warnings) log_warning(warning);
     if (prints_json())
-      print({out_}, options_.driver, {}, count, {});
+      print({out_}, options_.driver, {}, done.landmarks, {});
     else
-      log_summary(fmt::format("{}: {} landmarks, {}\n", out_, count, options_.driver));
+      log_summary(fmt::format("{}: {} landmarks, {}\n", out_, done.landmarks, options_.driver));
     return 0;
   }
 

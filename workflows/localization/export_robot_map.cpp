@@ -72,6 +72,20 @@ std::string mrpt_text(const RobotMap& map, const std::vector<RobotLandmark>& lan
   return text;
 }
 
+/// MRPT 2.5 indexes the landmarks of a map by a grid over all of them: 24 bytes per cell of 0.2 m.
+std::vector<std::string> warnings_of_mrpt(const std::vector<RobotLandmark>& landmarks) {
+  constexpr double bytes_per_square_metre = 24 / (0.2 * 0.2), max_bytes = 1e9;
+  Eigen::AlignedBox2d box;
+  for (const RobotLandmark& one : landmarks) box.extend(Eigen::Vector2d(one.at.head<2>()));
+  const double bytes = bytes_per_square_metre * box.volume();
+  if (bytes <= max_bytes) return {};
+  return {fmt::format(
+      "the landmarks lie {:.3g} x {:.3g} m apart: MRPT's grid of 0.2 m cells over them will take {:.3g} GB "
+      "of "
+      "memory; choose fewer with --type or --min-confidence, or first export a part of the map (--aoi)",
+      box.sizes().x(), box.sizes().y(), bytes / 1e9)};
+}
+
 }  // namespace
 
 std::optional<RobotFormat> parse_robot_format(std::string_view text) {
@@ -81,7 +95,7 @@ std::optional<RobotFormat> parse_robot_format(std::string_view text) {
   return std::nullopt;
 }
 
-std::int64_t export_robot_map(const RobotMapExport& request) {
+ExportedRobotMap export_robot_map(const RobotMapExport& request) {
   const std::filesystem::path output = request.output;
   keep_inputs(output, {request.map});
   if (!request.overwrite && std::filesystem::exists(output))
@@ -90,9 +104,10 @@ std::int64_t export_robot_map(const RobotMapExport& request) {
   const RobotMap map = open_robot_map(request.map, nullptr).map;
   for (const std::string& type : request.types) map.store->count(type);  // throws for an unknown one
   const std::vector<RobotLandmark> landmarks = read_landmarks(map, request);
-  write_file(output,
-             request.format == RobotFormat::beluga ? beluga_text(map, landmarks) : mrpt_text(map, landmarks));
-  return static_cast<std::int64_t>(landmarks.size());
+  const bool mrpt = request.format == RobotFormat::mrpt;
+  write_file(output, mrpt ? mrpt_text(map, landmarks) : beluga_text(map, landmarks));
+  return {static_cast<std::int64_t>(landmarks.size()),
+          mrpt ? warnings_of_mrpt(landmarks) : std::vector<std::string>()};
 }
 
 }  // namespace waymark::workflows

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "workflows/localization/export_robot_map.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -102,6 +103,24 @@ TEST_F(RobotExport, MrptGetsASectionOfBeacons) {
   EXPECT_EQ(ids.size(), 3u);
   const auto wanted = expected();
   EXPECT_TRUE(sum.isApprox(wanted.at("r1") + wanted.at("r2") + wanted.at("r3"), 1e-3));
+}
+
+TEST_F(RobotExport, MrptWarnsOfMapsThatItsGridCannotHold) {
+  const auto warnings = [&](RobotFormat format, double side) {
+    write_file(file("wide.csv"), fmt::format("type,uid,x,y,z\nrock,a,0,0,0\nrock,b,{0},{0},0\n", side));
+    ImportRequest import{.table = file("wide.csv"), .map = file("wide.gpkg")};
+    import.options.table_crs = "local";
+    import_landmarks(import);
+    return export_robot_map(
+               {.map = file("wide.gpkg"), .output = file("o"), .format = format, .overwrite = true})
+        .warnings;
+  };
+  EXPECT_THAT(warnings(RobotFormat::mrpt, 1200), testing::IsEmpty());
+  EXPECT_THAT(
+      warnings(RobotFormat::mrpt, 4000),
+      testing::ElementsAre(HasSubstr("4e+03 x 4e+03 m apart: MRPT's grid of 0.2 m cells over them will "
+                                     "take 9.6 GB")));
+  EXPECT_THAT(warnings(RobotFormat::beluga, 4000), testing::IsEmpty());
 }
 
 TEST_F(RobotExport, ProblemsAreNamed) {
