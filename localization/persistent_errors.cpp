@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "localization/persistent_errors.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <algorithm>
@@ -31,6 +32,18 @@ Eigen::Matrix2d turn(double yaw) {
 
 Eigen::Matrix3d inverse_of(const PoseEstimate& at) {
   return (at.covariance + 1e-12 * Eigen::Matrix3d::Identity()).inverse();
+}
+
+/// Returns `after`, but `before` in directions in which it is so much wider that samples do not explain it.
+Eigen::Matrix3d without_widening(const Eigen::Matrix3d& before, const Eigen::Matrix3d& after) {
+  constexpr double noise = 1.5;  // of a variance
+  const Eigen::Matrix3d root = square_root(before), identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d whiten = (root + 1e-9 * identity).inverse();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> ratio(whiten * after * whiten.transpose());
+  if (!(ratio.eigenvalues()[2] > noise)) return after;
+  const Eigen::Array3d kept = (ratio.eigenvalues().array() > noise).select(1, ratio.eigenvalues().array());
+  const Eigen::Matrix3d turned = root * ratio.eigenvectors();
+  return turned * kept.matrix().asDiagonal() * turned.transpose();
 }
 
 struct Update {
@@ -147,7 +160,9 @@ void PersistentErrors::limit() {
 void PersistentErrors::consider(const PoseEstimate& before, const PoseEstimate& after) {
   const std::optional<Update> update = as_update(before, after);
   if (!update) return restart();
-  with_pose_ = after.covariance * update->inverse * with_pose_;
+  // What a pose gets wider by, where a filter returns to an earlier estimate, has nothing to do with the
+  // errors.
+  with_pose_ = without_widening(before.covariance, after.covariance) * update->inverse * with_pose_;
 }
 
 // The localizer's pose is (robot + shift) * sensors.

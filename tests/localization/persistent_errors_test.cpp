@@ -195,6 +195,30 @@ TEST(PersistentErrors, AnUpdateOfALostRobotTeachesNoErrors) {
 }
 
 // The covariance of 500 particles has an error of a sixteenth, also where no sighting changes them.
+// A filter that matched false landmarks is sure of itself until it returns to dead reckoning, which is wider.
+TEST(PersistentErrors, AWiderPoseIsNoMoreCorrelatedWithTheErrors) {
+  Random random(11, "poses");
+  for (int k = 0; k < 200; ++k) {
+    PersistentErrors drift(kDrift);
+    PoseEstimate pose{{0, 0, random.uniform(-3, 3)}, Eigen::Vector3d(0.01, 0.01, 1e-4).asDiagonal()};
+    const BodyMotion step{{1, 0, 0}, 1e-6 * Eigen::Matrix3d::Identity()};
+    for (int i = 0; i < 100; ++i) pose = predict_pose(pose, drift.correct(pose, step, 2));
+    const PoseEstimate wide = pose;
+    for (Eigen::Index axis = 0; axis < 3; ++axis)
+      pose.covariance.row(axis) *= 0.1, pose.covariance.col(axis) *= 0.1;
+    drift.consider(wide, pose);
+    PoseEstimate wider = pose;
+    Eigen::Matrix3d turned;
+    for (double& value : turned.reshaped()) value = random.uniform(-1, 1);
+    wider.covariance += 30 * turned * wide.covariance * turned.transpose();
+    drift.consider(pose, wider);
+    // The errors turn the robot by at most their deviations, all in the direction of its own error.
+    const double errors = 2 * kDrift.yaw_rate_sd + 1 * kDrift.curvature_sd;
+    const double own = std::sqrt(pose.covariance(2, 2));
+    EXPECT_LE(drift.correct(wider, step, 2).covariance(2, 2), 1e-6 + errors * errors + 2 * errors * own) << k;
+  }
+}
+
 TEST(PersistentErrors, NoiseOfParticlesIsNoNewStart) {
   Random random(2, "particles");
   const double without = variance_ahead([](PersistentErrors&, const PoseEstimate& pose) { return pose; });
