@@ -31,9 +31,9 @@ struct ExportedRobotMap {
 
 /// Writes the landmarks in metres of the local east-north-up frame that `waymark localize` uses for the map,
 /// so that poses agree. Both formats hold a position and a whole number: for beluga the category, one per
-/// landmark type; for MRPT an id, one per landmark. Warns if MRPT's grid over them takes more than a gigabyte.
-/// Throws Error{input} for a map without landmarks, Error{usage} for an unknown type, Error{output} if the
-/// output exists and `overwrite` is false, or cannot be written.
+/// landmark type; for MRPT an id, one per landmark. Warns if MRPT's grid over them takes more than a
+/// gigabyte. Throws Error{input} for a map without landmarks, Error{usage} for an unknown type, Error{output}
+/// if the output exists and `overwrite` is false, or cannot be written.
 ExportedRobotMap export_robot_map(const RobotMapExport& request);
 
 }  // namespace waymark::workflows
