@@ -80,9 +80,8 @@ std::vector<std::string> warnings_of_mrpt(const std::vector<RobotLandmark>& land
   const double bytes = bytes_per_square_metre * box.volume();
   if (bytes <= max_bytes) return {};
   return {fmt::format(
-      "the landmarks lie {:.3g} x {:.3g} m apart: MRPT's grid of 0.2 m cells over them will take {:.3g} GB "
-      "of "
-      "memory; choose fewer with --type or --min-confidence, or first export a part of the map (--aoi)",
+      "the landmarks lie {:.3g} x {:.3g} m apart: MRPT's grid of 0.2 m cells over them will take {:.3g} GB; "
+      "choose fewer with --type or --min-confidence, or first export a part of the map (--aoi)",
       box.sizes().x(), box.sizes().y(), bytes / 1e9)};
 }
 
