@@ -35,6 +35,7 @@ class PersistentErrors {
 
   /// Follows an update of the pose that is not trusted: it teaches nothing, but the pose remains correlated
   /// with the errors (Schmidt 1966). Without that, an error that persists would count as new at each set.
+  /// What the pose gets wider by, beyond the noise of samples, is independent of the errors.
   void consider(const PoseEstimate& before, const PoseEstimate& after);
 
   /// Returns the robot's pose in the reference frame, of a localizer at `pose`.

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How much memory the program takes for rasters of different sizes.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <cmath>
 #include <map>
@@ -21,12 +19,7 @@ constexpr bool kOwnMemory = true;
 
 /// The largest memory of a run, MB.
 double peak_of(const std::vector<std::string>& words) {
-  const pid_t process = start_waymark(words);
-  int status = 0;
-  rusage usage{};
-  EXPECT_EQ(::wait4(process, &status, 0, &usage), process);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << words[0];
-  return static_cast<double>(usage.ru_maxrss) / 1024;
+  return static_cast<double>(usage_of_waymark(words).ru_maxrss) / 1024;
 }
 
 /// A mosaic of `times` x `times` copies of a raster of 2000 x 2000 cells with a cone 15 m high every `apart`

@@ -69,6 +69,15 @@ pid_t start_waymark(const std::vector<std::string>& words) {
   return child;
 }
 
+rusage usage_of_waymark(const std::vector<std::string>& words) {
+  const pid_t process = start_waymark(words);
+  int status = 0;
+  rusage usage{};
+  EXPECT_EQ(::wait4(process, &status, 0, &usage), process);
+  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << words[0];
+  return usage;
+}
+
 std::string text_of(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
+#include <sys/resource.h>
 #include <sys/types.h>
 
 #include <filesystem>
@@ -34,6 +35,8 @@ Outcome bash(const std::string& line);
 
 /// Starts the program and does not wait; nothing it says is kept.
 pid_t start_waymark(const std::vector<std::string>& words);
+/// Runs the program, which must succeed, and returns what it took.
+rusage usage_of_waymark(const std::vector<std::string>& words);
 
 /// Exit code of view_browser.py where there is no Chromium.
 inline constexpr int kNoBrowser = 77;

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How long the program takes until it works.
 #include <gtest/gtest.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 
@@ -13,11 +11,7 @@ namespace {
 
 /// Processor time of a run, milliseconds.
 double milliseconds_of(const std::vector<std::string>& words) {
-  const pid_t process = start_waymark(words);
-  int status = 0;
-  rusage usage{};
-  EXPECT_EQ(::wait4(process, &status, 0, &usage), process);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << words[0];
+  const rusage usage = usage_of_waymark(words);
   const auto of = [](const timeval& time) {
     return 1e3 * static_cast<double>(time.tv_sec) + 1e-3 * static_cast<double>(time.tv_usec);
   };

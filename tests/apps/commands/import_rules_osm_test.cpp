@@ -110,7 +110,7 @@ TEST_F(ImportRules, ATownOfOpenStreetMapSavedAsGeoJson) {
 }
 
 // A campus, from the extract and as a GeoPackage with layers of other names. Counted in its XML: 20 bollards,
-// 6 trees, 530 buildings (505 of them `building=yes`), of which 2 are not closed and 1 has no area.
+// 6 trees, 530 buildings (505 of them `building=yes`). Two of these are not closed, and one has no area.
 TEST_F(ImportRules, ARealTownSavedWithOtherLayersIsTheSame) {
   const auto data = std::filesystem::path(WAYMARK_SOURCE_DIR) /
                     "../shared/data/environments/gis/osm_kaiserslautern_uni.osm.gz";
